@@ -45,9 +45,9 @@ ROOTS = {
     "jointfmu_tools": "tools",
     "jointfmu_models": "models",
 }
-"""{import name: folder}."""
+"""Import names of the packages of the distribution, with their folders in the repository."""
 KERNEL_FOLDER = "core"
-"""Folder in which the kernel lies under its import name."""
+"""Folder of the package `jointfmu` (laws and joints), for the module search path of an editable wheel."""
 PAGES = {"Documentation": "/tree/HEAD/docs", "Changelog": "/blob/HEAD/CHANGELOG.md", "Issues": "/issues"}
 """{label of a project URL: path below the address of the repository}."""
 
@@ -79,7 +79,7 @@ def setup_arguments() -> dict[str, Any]:
 def build_editable(
     wheel_directory: str, config_settings: Any = None, metadata_directory: str | None = None
 ) -> str:
-    """Build the editable wheel of setuptools, with the folder of the kernel on the module search path.
+    """Build the editable wheel of setuptools, with the folder of the package `jointfmu` on the search path.
 
     Setuptools finds the packages by an import hook, which comes after the search path. There a clone of the
     repository in a folder `jointfmu` would be taken for the package, as a namespace package.
@@ -90,7 +90,7 @@ def build_editable(
 
 
 def _append_search_path(wheel: Path, folder: Path) -> None:
-    """Append a folder to the path configuration file (.pth) of an editable wheel."""
+    """Append a folder of modules to the path configuration file (.pth) of an editable wheel."""
     with zipfile.ZipFile(wheel) as archive:
         contents = {item: archive.read(item) for item in archive.infolist()}
     (search_path,) = (item for item in contents if item.filename.endswith(".pth"))

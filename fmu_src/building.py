@@ -20,6 +20,7 @@ FLAVOUR_BUILDERS: dict[str, Callable[..., Path]] = {
     "fmi3": partial(build_native, fmi_version="3"),
     "python": build_python,
 }
+"""{flavour of an FMU: function that builds one FMU in this flavour}."""
 
 
 def build_fmus(
@@ -78,7 +79,7 @@ def _build_flavours(
     build_options: Mapping[str, str],
     fmu_name: str,
 ) -> list[Path]:
-    """Build one FMU in several flavours, which share the compiled model; return the paths of the files."""
+    """Build one FMU in several flavours, which share the compiled model. Returns the paths of the files."""
     file = parameters or load_default(MODELS[fmu_name].joint)
     return [
         FLAVOUR_BUILDERS[flavour](fmu_name, file, output_folder / flavour, **build_options)

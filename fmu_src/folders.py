@@ -1,4 +1,7 @@
-"""Builder data and source folder of a model: of its joint, or of the partners (inertia, mass, loads)."""
+"""Builder data and source folder of a model: of its joint, or of the partners.
+
+Partners are the FMUs that a joint is connected to in a system: inertia, mass, loads.
+"""
 
 from pathlib import Path
 
@@ -23,7 +26,7 @@ def find_fmu_parts(model: Model) -> FmuParts:
 
 
 def find_source_folder(model: Model) -> Path:
-    """Folder with the C sources, page and icons of a model."""
+    """Folder with the C sources, documentation page and icons of a model's joint."""
     return find_fmu_parts(model).folder
 
 

@@ -51,6 +51,7 @@ def read_webassembly_licences() -> str:
 
 
 def _third_party_licences() -> Iterator[tuple[str, bytes]]:
+    """Yield path in an FMU and content of each third-party licence text."""
     for path in sorted(_THIRD_PARTY_FOLDER.glob("*.txt")):
         yield f"licenses/{path.name}", path.read_bytes()
 

@@ -47,12 +47,15 @@ _C_KEYWORD_TEXT = """auto break case char const continue default do double else 
 inline int long register restrict return short signed sizeof static struct switch typedef union unsigned void
 volatile while"""
 _C_KEYWORDS = frozenset(_C_KEYWORD_TEXT.split())
+"""Keywords of C, which are no valid names."""
 _MODELICA_KEYWORD_TEXT = """algorithm and annotation block break class connect connector constant
 constrainedby der discrete each else elseif elsewhen encapsulated end enumeration equation expandable extends
 external false final flow for function if import impure in initial inner input loop model not operator or
 outer output package parameter partial protected public pure record redeclare replaceable return stream then
 time true type when while within"""
 _MODELICA_KEYWORDS = frozenset(_MODELICA_KEYWORD_TEXT.split())
+"""Keywords of Modelica, which are no valid names."""
 _WINDOWS_DEVICES = frozenset(
     ["con", "prn", "aux", "nul", *(f"{port}{i}" for port in ("com", "lpt") for i in range(10))]
 )
+"""Names of devices on Windows, which are no valid file names."""

@@ -15,7 +15,7 @@ SSP_NAMESPACE = "http://ssp-standard.org/SSP1/SystemStructure"
 
 
 class ParameterValue(NamedTuple):
-    """Value of a parameter with its unit and source."""
+    """Value of a parameter in an SSV file, with its unit and source."""
 
     value: Any
     unit: str
@@ -28,7 +28,10 @@ def format_parameter_set(
     ssp_version: str = "1.0",
     metadata: Mapping[str, str] | None = None,
 ) -> bytes:
-    """Content of an SSV file of one SSP version; `metadata` gives further attributes of the root element."""
+    """Content of an SSV file (parameter set) of one SSP version.
+
+    metadata : further attributes of the root element
+    """
     spaces = {"xmlns:ssv": f"{SSP_NAMESPACE}ParameterValues", "xmlns:ssc": f"{SSP_NAMESPACE}Common"}
     root = Element(
         "ssv:ParameterSet", {**spaces, "version": ssp_version, "name": set_name, **(metadata or {})}

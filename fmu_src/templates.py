@@ -67,7 +67,9 @@ def _format_number(value: float | str) -> str:
 
 
 def law_variables(parameters: ParameterFile) -> dict[str, object]:
-    """Template variables of the contact law.
+    """{name: value} of the interface law that the template of a joint's page uses.
+
+    The values are the name of the law, whether it is `roughness` or `table`, their template, and numbers.
 
     Its name; whether it is `roughness` or `table`, and their template; numbers.
     """

@@ -16,7 +16,7 @@ VARIABILITIES = ("tunable", "fixed")
 
 
 class ListedVariable(NamedTuple):
-    """Variable as it is listed in a model description.
+    """Variable of a model as its model description lists it.
 
     start         : start value; None if the variable is calculated, a bool for a Boolean
     attributes    : XML attributes of a real number: unit, displayUnit, min, max, nominal
@@ -69,7 +69,7 @@ def format_start_value(value: float | bool) -> str:
 
 
 def stop_time(model: Model) -> float:
-    """Stop time [s] of the default experiment, which is the load ramp."""
+    """Stop time [s] of the default experiment of a model, which is the load ramp."""
     return round(model.ramp.end_value / model.ramp.value_step) * model.ramp.step_duration
 
 
@@ -138,11 +138,14 @@ def format_xml_comment(lines: Sequence[str]) -> str:
 
 
 def _unit_attributes(unit: str, typical_value: float) -> dict[str, str]:
-    """Attributes unit and displayUnit; the display unit suits a typical value [SI]."""
+    """XML attributes unit and displayUnit of a variable.
+
+    typical_value : [SI] for which the display unit is chosen
+    """
     return {"unit": unit, "displayUnit": CELSIUS_UNIT if unit == "K" else display_unit(unit, typical_value)}
 
 
 def _bound_attributes(interval: Interval) -> dict[str, str]:
-    """Attributes min and max of an interval, for its finite ends."""
+    """XML attributes min and max of an interval, for its finite ends."""
     bounds = zip(("min", "max"), interval.closed_bounds(), strict=True)
     return {name: repr(bound) for name, bound in bounds if math.isfinite(bound)}

@@ -10,6 +10,7 @@ __all__ = ["PARTS"]
 
 
 def _get_kernel_result(key: str, compute_result: Callable[[], bytes]) -> bytes:
+    """Stored result of a long computation of the package `jointfmu`, or compute and store it."""
     from jointfmu_fmu_src.native.compiled.compiled_models import get_kernel_result
 
     return get_kernel_result(key, compute_result)

@@ -37,6 +37,7 @@ from .quantity import (
 EntryValue = TypeVar("EntryValue")
 
 SCHEMA_VERSION = 1
+"""Version of the format of parameter files: their entry `schema`."""
 ORIGINS = (
     *("paper", "standard", "catalogue", "measured", "derived", "estimate", "calibration"),
     *("default", "user"),
@@ -46,8 +47,9 @@ computed from other values, an engineering estimate, fitted to points, a default
 ORIGIN_ALIASES = {"published": "paper"}
 """{former name of an origin: its name}."""
 _DEFAULT_SOURCE = "default choice"
-"""Start of the source of a default."""
+"""Beginning of the source text of a value that is a default."""
 _TOO_NESTED_TEXT = "has brackets or tables inside each other deeper than any file of this package"
+"""Error of a file whose tables are nested too deeply for the TOML parser."""
 _MAX_SHOWN_LENGTH = 60
 """Largest number of characters [1] of a wrong value in a message."""
 _NUMBERS_PER_LINE = 5
@@ -220,13 +222,17 @@ def load_parameter_file(path: str | Path, joint_name: str | None = None) -> Para
 
 
 def declared_entries(joint_name: str, cls: type) -> dict[str, Field[Any]]:
-    """{structured name: field} of all entries that a parameter file with the parameter set `cls` may have."""
+    """{structured name: field} of all entries that a parameter file of a joint may have.
+
+    cls : class of the parameter set
+    """
     return dict(flatten_fields(cls)) | _input_fields(joint_name) | _roughness_fields(_heights_prefix(cls))
 
 
 def _drop_entries(
     removed_names: Collection[str], values_by_name: Mapping[str, EntryValue]
 ) -> dict[str, EntryValue]:
+    """Copy of {structured name: value} without the removed names."""
     return {name: value for name, value in values_by_name.items() if name not in removed_names}
 
 
@@ -354,7 +360,7 @@ def _read_ranges(
 
 
 def list_entries(sections: Mapping[str, object], prefix: str = "") -> list[tuple[str, Any]]:
-    """(structured name, entry) for each innermost item of a nested table.
+    """List (structured name, entry) of each innermost item of the nested tables of a parameter file.
 
     Innermost items are tables with a key `value`, empty tables and all items that are no table.
     """
@@ -395,7 +401,10 @@ def _roughness_fields(prefix: str) -> dict[str, Field[Any]]:
 
 
 def _pop_section(values_by_name: dict[str, Any], section_prefix: str) -> dict[str, Any]:
-    """Remove a section from {structured name: value}; return {name in the section: value}."""
+    """Remove the entries of a file section from {structured name: value}.
+
+    Returns them as {name in the section: value}.
+    """
     return {
         n.removeprefix(section_prefix): values_by_name.pop(n)
         for n in list(values_by_name)
@@ -445,6 +454,7 @@ def format_parameter_file(parameters: ParameterFile) -> str:
 
 
 def _format_toml(value: Any) -> str:
+    """Format a value as TOML: number, text, boolean or list."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, tuple):

@@ -72,6 +72,7 @@ def show_status(command_name: str) -> Iterator[None]:
 
 @contextmanager
 def _show_outer_status(command_name: str) -> Iterator[None]:
+    """Context that shows a status line, for the outermost of nested `show_status`."""
     if not sys.stderr.isatty():
         with _print_status_lines(command_name):
             yield
@@ -164,6 +165,7 @@ class _WorkerPool(ProcessPoolExecutor):
             super().__init__(process_count, multiprocessing.get_context("spawn"), _set_up_worker)
 
     def submit(self, /, *args: Any, **arguments: Any) -> Future[Any]:
+        """Start a function in a worker process, with its arguments; returns the future result."""
         with _quiet_start_context():
             future = super().submit(*args, **arguments)
             if len(self._processes) == self._process_count:
@@ -219,6 +221,7 @@ def run_jobs(
         running: dict[Future[Result], tuple[Job, int, Executor]] = {}
 
         def submit_job(job: Job, attempt: int, pool: Executor | None) -> None:
+            """Give a job to a worker process, and store the number of its attempt."""
             try:
                 pool = pool or entered.enter_context(worker_processes(1))
                 future = pool.submit(job_function, job)
@@ -292,6 +295,7 @@ def _set_up_worker() -> None:
 
 
 def _end_with_parent_process() -> None:
+    """Wait until the parent process ends, then end this worker process."""
     if parent := multiprocessing.parent_process():
         parent.join()
         os._exit(1)

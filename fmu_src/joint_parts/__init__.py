@@ -29,7 +29,9 @@ class RampPanel(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FmuParts:
-    """Builder data of one joint; fields that differ between its FMUs are {FMU: ...}.
+    """Builder data of one joint: what its FMUs have beyond the model.
+
+    Fields that differ between FMUs of the joint are {FMU: ...}.
 
     folder          : folder with page, icons and C sources of the joint
     native          : function that loads the definition of the C code; it needs CasADi, so it is called only
@@ -52,6 +54,7 @@ def make_native_definition_loader(package_name: str) -> "Callable[[], NativeDefi
     """Function that imports the module `native` of a joint's folder and returns its `NATIVE_PART`."""
 
     def load_definition() -> "NativeDefinition":
+        """Import the module and return its `NATIVE_PART`."""
         part: NativeDefinition = import_module(f"{package_name}.native").NATIVE_PART
         return part
 
@@ -59,7 +62,7 @@ def make_native_definition_loader(package_name: str) -> "Callable[[], NativeDefi
 
 
 def load_equations_definition() -> "NativeDefinition":
-    """C definition of a joint whose outputs are explicit functions: it needs no C sources of its own."""
+    """C definition of a joint whose outputs are explicit functions, without C sources of its own."""
     from .native import EXPLICIT_EQUATIONS_DEFINITION
 
     return EXPLICIT_EQUATIONS_DEFINITION

@@ -10,7 +10,7 @@ from .interface_table import find_code_class, replace_points
 
 
 class DataTable(NamedTuple):
-    """Table (n, k) of numbers that follow from the parameters.
+    """Table (n, k) of numbers in the data block of an FMU, computed from the parameters.
 
     max_rows   : largest number of rows; the data block reserves space for it
     is_integer : whether the numbers are 2-byte integers; the size of a row is then a multiple of 8 bytes
@@ -22,7 +22,9 @@ class DataTable(NamedTuple):
 
 
 Tables = Mapping[str, DataTable]
+"""{name: table} that the C code of a joint reads."""
 EMPTY_TABLES: Tables = {}
+"""Tables of a joint whose C code reads none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +64,6 @@ class ParameterSplit(NamedTuple):
 
     @property
     def code_structure_key(self) -> str:
-        """Text that is equal for all parameter files with the same C code."""
+        """Text that is equal for all parameter files with the same generated C code (the same structure)."""
         shapes = {name: (table.max_rows, table.rows.shape[1]) for name, table in self.tables.items()}
         return repr((sorted(self.code_values.items()), list(self.data_values), sorted(shapes.items())))

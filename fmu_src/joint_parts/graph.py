@@ -18,6 +18,7 @@ from jointfmu.quantity import Number, ParameterLimit, build_parameter_set
 from .data import ParameterSplit
 
 Symbols = Sequence[Number]
+"""Symbols or expressions of CasADi."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,7 +135,7 @@ def build_graph(
 ) -> FunctionGraph:
     """Build the C functions of an FMU. FMU variables and data are symbols; other parameters are numbers.
 
-    add_functions : adds the functions of the joint
+    add_functions : function (graph, model) that adds the functions of the joint
     is_tabulated  : whether the joint has a tabulated curve: then functions of its validity limits are added
     """
     previous_mode = ca.GlobalOptions.getNumpyMode()
@@ -188,7 +189,10 @@ def _add_limit_functions(function_graph: FunctionGraph, model: Model) -> None:
 
 @dataclass(frozen=True, slots=True)
 class _CompletedTerm:
-    """Term of the contact law whose regime ends below the largest spot: its integral is a constant."""
+    """Load, stiffness or area of contact spots in a regime that ends below the largest spot.
+
+    So the integral over the regime is a constant of the parameters.
+    """
 
     term: SmoothTerm
 
@@ -208,7 +212,7 @@ class _CompletedTerm:
 
 
 def _split_regimes(spot_distribution: SpotDistribution) -> tuple[list[Number], list[SpotDistribution]]:
-    """Log-areas at which a term with Gauss-Legendre quadrature begins or ends, and the law between them.
+    """Log-areas at which integrals by quadrature begin or end, and the contact law between each two of them.
 
     Between two of these log-areas only the active terms need their quadrature.
     """
@@ -220,9 +224,11 @@ def _split_regimes(spot_distribution: SpotDistribution) -> tuple[list[Number], l
                 ends.append(end)
 
     def find_bound_index(bound_log_area: Number) -> int:
+        """Index of a log-area among the sorted ends of the regimes."""
         return next(i for i, known in enumerate(ends) if known is bound_log_area)
 
     def split_term(term: RegimeTerm, regime_index: int) -> list[RegimeTerm]:
+        """Terms that are active in one range of log-areas, for a term of the whole law."""
         if not isinstance(term, SmoothTerm):
             return [term]
         if find_bound_index(term.upper_log_area) < regime_index:
@@ -306,7 +312,7 @@ def _load_curvature(spot_distribution: SpotDistribution, largest_log_area: Numbe
 
 
 def add_closing_function(function_graph: FunctionGraph) -> None:
-    """Add the function of contact closing, for joints with a curve of pressure against approach."""
+    """Add the C function of the closing of a contact, for joints with a curve of pressure over approach."""
     p, k, bend, z = make_symbols("x", 4)
     doc = "p, k, dk/dx at the end of the closing, z -> displacement from there, p, k, dk/dx at z"
     function_graph.add_function("closing_pressure", doc, [p, k, bend, z], closing_pressure(p, k, bend, z))

@@ -13,7 +13,10 @@ from jointfmu.quantity import Number, flatten_parameters, group_field, quantity_
 
 @dataclass(frozen=True, kw_only=True)
 class _SplineNumbers:
-    """First and last point of a `StiffnessTable`; subclasses add the spline, one field for each number."""
+    """First point, last pressure and spline of a `StiffnessTable`, as single numbers.
+
+    Subclasses add one field for each number of the spline.
+    """
 
     columns: ClassVar[Mapping[str, tuple[str, ...]]] = {
         column: tuple(f"{column}_{i}" for i in range(MAX_TABLE_POINTS)) for column in LogSpline._fields
@@ -31,7 +34,7 @@ class _SplineNumbers:
 
     @property
     def spline(self) -> LogSpline:
-        """Spline through the points."""
+        """Spline of the log-stiffness over the log-pressure, from its numbers."""
         return LogSpline(*([getattr(self, name) for name in names] for names in self.columns.values()))
 
 
@@ -40,11 +43,13 @@ _NUMBER_FIELDS = [
     for column, names in _SplineNumbers.columns.items()
     for i, name in enumerate(names)
 ]
+"""Dataclass fields for the numbers of the spline."""
 _STATED_FIELDS = [
     (item.name, float, field(metadata=item.metadata, default=item.default))
     for item in fields(StiffnessTable)
     if "series" not in item.metadata
 ]
+"""Dataclass fields of `StiffnessTable` that are single numbers: ratio and factor."""
 _TableNumbers = make_dataclass(
     "_TableNumbers",
     [*_NUMBER_FIELDS, *_STATED_FIELDS],
@@ -56,7 +61,7 @@ _TableNumbers = make_dataclass(
 
 
 def _find_table(parameters: object) -> StiffnessTable | None:
-    """Points of a parameter set with the law `table`; None for another law."""
+    """Points of the stiffness in a parameter set with the law `table`; None for another law."""
     table = getattr(parameters, "table", None)
     return table if isinstance(table, StiffnessTable) else None
 
@@ -69,6 +74,7 @@ def find_code_class(parameters: object) -> type[object]:
 
 @cache
 def _class_with_numbers(cls: Any) -> type[object]:
+    """Class of a parameter set in which the spline's numbers replace the points of the table."""
     section = ("table", _TableNumbers, group_field("spline of the stiffness over the pressure"))
     return make_dataclass(cls.__name__, [section], bases=(cls,), frozen=True, kw_only=True)
 

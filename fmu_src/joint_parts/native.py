@@ -79,8 +79,9 @@ REAL_CONSTANT_NAMES: ModuleConstants = {
         "ONE_SIDED_OFFSET",
     ),
 }
+"""Real constants of Python modules that the C of every joint with tables has under the same names."""
 INTEGER_CONSTANT_NAMES: ModuleConstants = {curve: ("MAX_REFINEMENT",), interface: ("MAX_ITERATIONS",)}
-"""Python constants in the C of every joint with tables: integers (REAL_CONSTANT_NAMES: real numbers)."""
+"""Integer constants of Python modules that the C of every joint with tables has under the same names."""
 
 
 def define_constants(
@@ -111,12 +112,12 @@ class NativeDefinition:
 
     @property
     def is_tabulated(self) -> bool:
-        """Whether the joint has a tabulated curve."""
+        """Whether the joint evaluates a tabulated curve of load over displacement."""
         return "tabulated_joint" in self.shared_file_stems
 
 
 def _add_equations(function_graph: FunctionGraph, model: Model) -> None:
-    """Add the outputs, and the event times if any, of a model with explicit equations."""
+    """Add the outputs, and the event times if any, of a model with explicit equations to a graph."""
     names = ("time", *(v.name for v in model.inputs), *(v.name for v in model.outputs[: model.state_count]))
     v: dict[str, Any] = {name: ca.SX.sym(name) for name in names}
     outputs = model.evaluate(function_graph.joint, v)
@@ -177,7 +178,7 @@ def _add_jacobian(
 
 
 def _define_jacobian_size(function_graph: FunctionGraph, model: Model) -> CDefinitions:
-    """Number of factors that `outputs_jacobian` computes."""
+    """Constant with the number of factors that the C function `outputs_jacobian` computes."""
     sizes = [len(f.result_expressions) for f in function_graph.functions if f.name == "outputs_jacobian"]
     return CDefinitions({"N_JACOBIAN": sizes[0]} if sizes else {})
 
@@ -187,7 +188,7 @@ EXPLICIT_EQUATIONS_DEFINITION = NativeDefinition(_add_equations, ("equations",),
 
 
 def shared_definitions(shared_file_stems: Sequence[str]) -> CDefinitions:
-    """Constants that the shared C files need."""
+    """Constants that shared C files of `runtime/law/` with given stems need."""
     if "tabulated_joint" not in shared_file_stems:
         return CDefinitions()
     tables = define_constants(REAL_CONSTANT_NAMES, INTEGER_CONSTANT_NAMES) | CDefinitions(

@@ -12,7 +12,10 @@ SLIDER_FILES = ("jenkins", "simd")
 
 
 def add_slider_functions(function_graph: FunctionGraph) -> None:
-    """Add the slider functions: in one direction with a constant or a changing limit, and in a plane."""
+    """Add the return mappings of a friction slider to a graph.
+
+    They are for one direction with a constant or a changing limit, and for a plane.
+    """
     force, displacement, limit_start, limit_end, stiffness, compliance = make_symbols("x", 6)
     predictor = elastic_predictor([force], 1.0, stiffness, [displacement])
     doc = "force, displacement, limit, stiffness -> elastic predictor, its limit function"
@@ -71,9 +74,9 @@ def _add_plane_slider_functions(function_graph: FunctionGraph) -> None:
 def _symbolic_return_mapping() -> tuple[list[ca.SX], tuple[list[ca.SX], ca.SX, list[ca.SX]], ReturnMapping]:
     """Return mapping of a slider with two tangential directions, for symbolic arguments.
 
-    Returns all arguments (force, fraction of the force retained, stiffness of the increment, displacement
-    increment, limits at start and end, stiffness, compliance), among them (force, limit at end, increment),
-    and the result.
+    Returns all arguments of the return mapping (force, fraction of the force retained, stiffness of the
+    increment, displacement increment, limits at start and end, stiffness, compliance), among them (force,
+    limit at end, increment), and the result.
     """
     force, displacement = make_symbols("q", 2), make_symbols("u", 2)
     retention, secant_stiffness = make_symbols("k", 2)

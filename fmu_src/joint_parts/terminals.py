@@ -3,7 +3,9 @@
 from typing import NamedTuple
 
 ROTATIONAL_FLANGE_CLASS = "Modelica.Mechanics.Rotational.Interfaces.Flange_"
+"""Modelica class of a rotational flange, without its last letter a or b."""
 TRANSLATIONAL_FLANGE_CLASS = "Modelica.Mechanics.Translational.Interfaces.Flange_"
+"""Modelica class of a translational flange, without its last letter a or b."""
 
 
 class Terminal(NamedTuple):

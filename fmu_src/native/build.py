@@ -107,6 +107,7 @@ def make_common_members(
 _FMI2_PLATFORMS = {"x86_64-windows": "win64", "x86_64-linux": "linux64", "aarch64-linux": "aarch64-linux"}
 """{platform name of FMI 3.0: platform name of FMI 2.0}; for macOS see `place_libraries`."""
 _MACOS_PLATFORMS = ("x86_64-darwin", "aarch64-darwin")
+"""Names in FMI 3.0 of the macOS platforms, which share one universal file in FMI 2.0."""
 
 
 def place_libraries(library_name: str, libraries: Mapping[str, bytes], fmi_version: str) -> dict[str, bytes]:
@@ -129,4 +130,5 @@ def place_libraries(library_name: str, libraries: Mapping[str, bytes], fmi_versi
 
 
 def _add_folder(folder: str, contents: Mapping[str, bytes]) -> dict[str, bytes]:
+    """Prefix the paths of {path: content} with a folder."""
     return {f"{folder}/{path}": content for path, content in contents.items()}

@@ -29,16 +29,20 @@ LOG_CATEGORIES = {
     "logStatusWarning": "the state has left the range of the law; once for each way of leaving it",
     "logStatusError": "why a call was refused: what was found and what was expected",
 }
+"""{log category of FMI: its meaning}."""
 _TIME_VARIABLE = ListedVariable(
     "time", "independent", "simulation time", None, {"unit": "s", "displayUnit": "s"}
 )
+"""Entry of the time in a model description."""
 _COMMON_CAPABILITIES = {"needsExecutionTool": "false", "canBeInstantiatedOnlyOncePerProcess": "false"}
+"""Capability flags of an FMU that both FMI versions have."""
 _FMI2_CAPABILITIES = _COMMON_CAPABILITIES | {
     "canNotUseMemoryManagementFunctions": "true",
     "canGetAndSetFMUstate": "true",
     "canSerializeFMUstate": "true",
     "providesDirectionalDerivative": "true",
 }
+"""Capability flags of both interface types in FMI 2.0."""
 _FMI2_INTERFACE_TYPES = {
     "ModelExchange": _FMI2_CAPABILITIES | {"completedIntegratorStepNotNeeded": "true"},
     "CoSimulation": _FMI2_CAPABILITIES
@@ -49,6 +53,7 @@ _FMI2_INTERFACE_TYPES = {
         "canRunAsynchronuously": "false",
     },
 }
+"""{interface type: capability flags} in FMI 2.0."""
 _FMI3_CAPABILITIES = _COMMON_CAPABILITIES | {
     "canGetAndSetFMUState": "true",
     "canSerializeFMUState": "true",
@@ -56,6 +61,7 @@ _FMI3_CAPABILITIES = _COMMON_CAPABILITIES | {
     "providesAdjointDerivatives": "true",
     "providesPerElementDependencies": "true",
 }
+"""Capability flags of both interface types in FMI 3.0."""
 _FMI3_INTERFACE_TYPES = {
     "ModelExchange": _FMI3_CAPABILITIES
     | {"needsCompletedIntegratorStep": "false", "providesEvaluateDiscreteStates": "false"},
@@ -71,6 +77,7 @@ _FMI3_INTERFACE_TYPES = {
         "providesEvaluateDiscreteStates": "false",
     },
 }
+"""{interface type: capability flags} in FMI 3.0."""
 
 
 def format_fmi2_description(
@@ -173,7 +180,10 @@ def _make_root(model: Model, fmi_version: str, token_name: str, token: str) -> E
 
 
 def _type_attributes(variables: Sequence[ListedVariable]) -> dict[str, dict[str, str]]:
-    """{quantity: attributes of its type definition}; its display unit is the first one of the unit."""
+    """{quantity: attributes of its type definition} in a model description.
+
+    The display unit of a type is the first display unit of its SI unit.
+    """
     return {
         UNITS[name].quantity: {
             "quantity": UNITS[name].quantity,
@@ -185,6 +195,7 @@ def _type_attributes(variables: Sequence[ListedVariable]) -> dict[str, dict[str,
 
 
 def _add_log_categories_and_experiment(root: Element, model: Model) -> None:
+    """Add the log categories and the default experiment to a model description."""
     categories = SubElement(root, "LogCategories")
     for name, doc in LOG_CATEGORIES.items():
         SubElement(categories, "Category", name=name, description=doc)

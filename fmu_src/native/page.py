@@ -23,6 +23,7 @@ from ..xml_parts import list_variables
 from .terminals import find_terminals
 
 _RAMP_POINT_COUNT = 41
+"""Number of points of the load ramp in the charts [1]."""
 
 
 class _ParameterRow(NamedTuple):
@@ -38,6 +39,7 @@ class _ParameterRow(NamedTuple):
 
 
 _INERTIA_UNITS = {"N.m/rad": "kg.m2", "N/m": "kg"}
+"""{unit of a stiffness: unit of the inertia of a body on it}."""
 _EXAMPLE_INERTIAS = {"kg.m2": (0.01, 0.1, 1.0, 10.0), "kg": (1.0, 10.0, 100.0, 1000.0)}
 """{unit: inertias or masses} for which the page lists the largest stable steps."""
 
@@ -57,7 +59,7 @@ class _StableSteps(NamedTuple):
 
 
 def make_documentation(model: Model, parameters: ParameterFile) -> dict[str, bytes]:
-    """{path: content} of the folder documentation, the same for FMI 2.0 and 3.0."""
+    """{path: content} of the folder documentation of an FMU: page, licences, images."""
     source = model, parameters, find_asset(model, "page.html")
     page = (
         render_variables_page(*source, find_terminals(model))
@@ -170,7 +172,7 @@ def _round_to_three_digits(number: float) -> float:
 def _list_log_messages(
     model: Model, tabulated_joint: TabulatedJoint, start_values: Mapping[str, float]
 ) -> list[tuple[str, str, str]]:
-    """(level, example, meaning) of the messages that an instance may log."""
+    """List (level, example, meaning) of the messages that an instance of an FMU may log."""
     name, item = next(iter(model.parameter_fields().items()))
     v = model.inputs[0]
     parameter_error = find_problem(name, np.nan, item) or ""
@@ -201,7 +203,7 @@ def _list_log_messages(
 def _example_warnings(
     model: Model, tabulated_joint: TabulatedJoint, start_values: Mapping[str, float]
 ) -> list[str]:
-    """Example of each warning: end of the load ramp, one variable 10 % beyond its validity limit."""
+    """Example of each warning of a joint: at the end of the load ramp, one variable 10 % beyond its limit."""
     inputs = {**start_values, model.ramp.input_name: model.ramp.end_value}
     values = inputs | evaluate_outputs(model, tabulated_joint, inputs)
     warnings = []
@@ -222,7 +224,7 @@ def evaluate_outputs(
 
 
 def find_ramp_panels(model: Model) -> tuple[RampPanel, ...]:
-    """Charts of the load ramp; default: the first output against the ramped input."""
+    """Charts of the load ramp of a model. Default: the first output over the ramped input."""
     charts = find_fmu_parts(model).ramp_panels.get(model.name)
     return charts or (RampPanel(model.ramp.input_name, (model.outputs[0].name,)),)
 
@@ -236,6 +238,7 @@ def _draw_ramp(model: Model, tabulated_joint: TabulatedJoint, start_values: Mapp
     variables = {v.name: v for v in (*model.inputs, *model.outputs)}
 
     def convert_column(variable_name: str, unit: str) -> list[float]:
+        """Values of a variable along the ramp, in a unit of the chart."""
         factor = UNITS[variables[variable_name].unit].display_factors[unit]
         return [factor * row[variable_name] for row in rows]
 
@@ -249,7 +252,7 @@ def _draw_ramp(model: Model, tabulated_joint: TabulatedJoint, start_values: Mapp
 
 
 def draw_further_charts(model: Model, tabulated_joint: TabulatedJoint) -> dict[str, str]:
-    """{name: HTML element} of the further charts of a page."""
+    """{name: HTML element} of the charts of a page besides the load ramp."""
     drawings = find_fmu_parts(model).chart_drawings.get(model.name, {})
     return {
         name: chart.make_figure(panels(tabulated_joint, model.ramp.end_value))

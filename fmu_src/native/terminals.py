@@ -14,13 +14,15 @@ from ..joint_parts.terminals import ROTATIONAL_FLANGE_CLASS, TRANSLATIONAL_FLANG
 from ..xml_parts import serialize_xml
 
 _FLANGE_COLORS = {ROTATIONAL_FLANGE_CLASS: "0 0 0", TRANSLATIONAL_FLANGE_CLASS: "0 127 0"}
+"""{class of a flange: RGB colour of its icon}."""
 _ICON_HALF_SIZE = 10.0
+"""Half the side of the icon of a flange, in units of the FMU's icon (200 wide) [1]."""
 _FLANGE_ICON_FOLDER = Path(__file__).with_name("flanges")
 """Folder of the flange icons, 32 x 32 pixels: circle or square, filled for side a, open for side b."""
 
 
 def find_terminals(model: Model) -> tuple[Terminal, ...]:
-    """Flanges of an FMU; may be empty."""
+    """Flanges (FMI terminals) of an FMU; may be empty."""
     return find_fmu_parts(model).terminals.get(model.name, ())
 
 

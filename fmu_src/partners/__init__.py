@@ -1,4 +1,7 @@
-"""Builder data of the partners: FMUs of inertia, mass and loads that a system needs besides its joints."""
+"""Builder data of the partners: FMUs that a system needs besides its joints.
+
+A partner is an inertia, a mass, a load or a prescribed motion that is connected to a joint.
+"""
 
 from pathlib import Path
 
@@ -33,5 +36,6 @@ FMU_PARTS = FmuParts(
         "TranslationalMass": _make_body_flanges("s", "v", "f", TRANSLATIONAL_FLANGE_CLASS, "the mass"),
     },
 )
+"""Builder data of the partners."""
 
 __all__ = ["FMU_PARTS", "PARTNERS", "load_partner_parameters"]

@@ -1,4 +1,7 @@
-"""Equations of the partner FMUs: inertia, mass, and prescribed loads and motions."""
+"""Equations of the partner FMUs: inertia, mass, and prescribed loads and motions.
+
+A partner is an FMU that is connected to a joint in a system.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, make_dataclass
@@ -35,7 +38,7 @@ class RotationalInertia(CheckedParameters):
     lag_b: float = _declare_lag_parameter("b")
 
     def evaluate_outputs(self, variable_values: Mapping[str, Number]) -> dict[str, Number]:
-        """Angle [rad] from the hanging position, angular speed [rad/s], angular acceleration [rad/s2]."""
+        """Angle [rad] from the hanging position, angular speed [rad/s] and acceleration [rad/s2]."""
         weight = self.m * GRAVITY * self.l * np.sin(variable_values["phi"])
         return {
             "phi": variable_values["phi"],
@@ -46,7 +49,7 @@ class RotationalInertia(CheckedParameters):
 
 @dataclass(frozen=True, kw_only=True)
 class TranslationalMass(CheckedParameters):
-    """Mass loaded by two forces."""
+    """Mass that moves along a line, loaded by two forces."""
 
     inertia_name: ClassVar[str] = "m"
     m: float = quantity_field("kg", "mass", gt=0.0)
@@ -54,7 +57,7 @@ class TranslationalMass(CheckedParameters):
     lag_b: float = _declare_lag_parameter("b")
 
     def evaluate_outputs(self, variable_values: Mapping[str, Number]) -> dict[str, Number]:
-        """Position [m], speed [m/s], acceleration [m/s2]."""
+        """Position [m], speed [m/s] and acceleration [m/s2] of the mass under its forces."""
         return {
             "s": variable_values["s"],
             "v": variable_values["v"],
@@ -64,7 +67,10 @@ class TranslationalMass(CheckedParameters):
 
 @dataclass(frozen=True, kw_only=True)
 class _RampAndPulse(CheckedParameters):
-    """Load over time: a ramp that stays at its end value, and a pulse; subclasses define the heights."""
+    """Load over time: a ramp that stays at its end value, plus a pulse.
+
+    Subclasses define the heights of ramp and pulse.
+    """
 
     ramp_start: float = quantity_field("s", "start time of the ramp")
     ramp_duration: float = quantity_field("s", "duration of the ramp", gt=0.0)
@@ -89,13 +95,13 @@ class _RampAndPulse(CheckedParameters):
 
 @dataclass(frozen=True, kw_only=True)
 class TorqueProfile(_RampAndPulse):
-    """Torque over time: ramp and pulse."""
+    """Prescribed torque over time: ramp and pulse."""
 
     ramp_height: float = quantity_field("N.m", "torque at the end of the ramp")
     pulse_height: float = quantity_field("N.m", "torque of the plateau of the pulse")
 
     def evaluate_outputs(self, variable_values: Mapping[str, Number]) -> dict[str, Number]:
-        """Torque [N.m], including the input torque."""
+        """Prescribed torque [N.m] at the time of the variables, plus the input torque."""
         return {
             "tau": variable_values["tau_in"]
             + self.evaluate_load(variable_values["time"], self.ramp_height, self.pulse_height)
@@ -104,13 +110,13 @@ class TorqueProfile(_RampAndPulse):
 
 @dataclass(frozen=True, kw_only=True)
 class ForceProfile(_RampAndPulse):
-    """Force over time: ramp and pulse."""
+    """Prescribed force over time: ramp and pulse."""
 
     ramp_height: float = quantity_field("N", "force at the end of the ramp")
     pulse_height: float = quantity_field("N", "force of the plateau of the pulse")
 
     def evaluate_outputs(self, variable_values: Mapping[str, Number]) -> dict[str, Number]:
-        """Force [N], including the input force."""
+        """Prescribed force [N] at the time of the variables, plus the input force."""
         return {
             "f": variable_values["f_in"]
             + self.evaluate_load(variable_values["time"], self.ramp_height, self.pulse_height)
@@ -130,7 +136,7 @@ class AngleProfile(CheckedParameters):
         return (self.start, self.start + self.duration)
 
     def evaluate_outputs(self, variable_values: Mapping[str, Number]) -> dict[str, Number]:
-        """Angle [rad] and angular speed [rad/s], including the input angle and speed."""
+        """Prescribed angle [rad] and angular speed [rad/s], plus the input angle and speed."""
         x = (variable_values["time"] - self.start) / self.duration
         rate, _ = smooth_step_slopes(x)
         return {
@@ -144,18 +150,19 @@ CONTROL_POINT_COUNT = 17
 
 
 _CONTROL_POINT_NAMES = [f"p{k + 1}" for k in range(CONTROL_POINT_COUNT)]
+"""Parameter names of the control points: p1, p2, ..."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class _BernsteinTorque(CheckedParameters):
-    """Torque over time as a Bernstein polynomial; constant before its start and after its end."""
+    """Prescribed torque over time as a Bernstein polynomial; constant before its start and after its end."""
 
     start: float = quantity_field("s", "start time of the curve")
     duration: float = quantity_field("s", "duration of the curve", gt=0.0)
 
     @staticmethod
     def basis_functions(normalized_time: Number) -> list[Number]:
-        """Bernstein basis: weight of each control point at the normalized time x [1]."""
+        """Bernstein basis (17): weight of each control point at the normalized time x [1], 0 to 1."""
         r = np.fmin(np.fmax(normalized_time, 0.0), 1.0)
         last = CONTROL_POINT_COUNT - 1
         return [comb(last, k) * r**k * (1.0 - r) ** (last - k) for k in range(CONTROL_POINT_COUNT)]
@@ -164,7 +171,9 @@ class _BernsteinTorque(CheckedParameters):
     def fit_control_points(
         cls, normalized_times: NDArray[np.float64], torque: NDArray[np.float64]
     ) -> dict[str, float]:
-        """Fit control points {name: torque [N.m]} to torques over x [1] from 0 to 1, exact at both ends.
+        """Fit control points {name: torque [N.m]} of a torque curve to torques at times x [1], 0 to 1.
+
+        The curve is exact at both ends.
 
         Least squares at the given points.
         """
@@ -176,11 +185,11 @@ class _BernsteinTorque(CheckedParameters):
         return dict(zip(_CONTROL_POINT_NAMES, map(float, points), strict=True))
 
     def find_corner_times(self) -> tuple[Number, ...]:
-        """Times [s] at which the curve begins and ends."""
+        """Times [s] at which the prescribed torque begins and ends to change."""
         return (self.start, self.start + self.duration)
 
     def evaluate_outputs(self, variable_values: Mapping[str, Number]) -> dict[str, Number]:
-        """Torque [N.m], including the input torque."""
+        """Prescribed torque [N.m] at the time of the variables, plus the input torque."""
         weights = self.basis_functions((variable_values["time"] - self.start) / self.duration)
         terms = [
             getattr(self, name) * weight for name, weight in zip(_CONTROL_POINT_NAMES, weights, strict=True)
@@ -189,7 +198,7 @@ class _BernsteinTorque(CheckedParameters):
 
 
 def _define_control_point(point_name: str) -> tuple[str, type, Any]:
-    """Dataclass field of one control point."""
+    """Dataclass field of a parameter: torque at one control point of the Bernstein polynomial."""
     doc = f"torque at point {point_name[1:]} of {CONTROL_POINT_COUNT} of the Bernstein polynomial"
     return point_name, float, quantity_field("N.m", doc)
 

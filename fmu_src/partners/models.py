@@ -1,4 +1,7 @@
-"""Models (variables, ramp, equations) and parameters of the partner FMUs: inertia, mass, loads."""
+"""Models (variables, ramp, equations) and parameters of the partner FMUs.
+
+A partner is an inertia, mass, load or prescribed motion that is connected to a joint in a system.
+"""
 
 from collections.abc import Sequence
 from importlib.resources import files
@@ -20,7 +23,7 @@ def _make_model(
     load_ramp: LoadRamp,
     state_count: int = 0,
 ) -> Model:
-    """Model of a partner, from its parameter class and variables."""
+    """Model of a partner FMU, from its parameter class and variables."""
     return Model(
         name=parameter_class.__name__,
         joint="partner",
@@ -112,16 +115,17 @@ PARTNERS: dict[str, Model] = {
         ),
     )
 }
+"""{name of a partner FMU: its model}."""
 
 
 def load_partner_parameters(partner_name: str) -> ParameterFile:
-    """Load the parameter file of a partner, models/partners/NAME.toml, see `read_partner_parameters`."""
+    """Load the parameter file of a partner FMU, models/partners/NAME.toml, see `read_partner_parameters`."""
     path = Path(str(files("jointfmu_models") / "partners" / f"{partner_name}.toml"))
     return read_partner_parameters(path, partner_name)
 
 
 def read_partner_parameters(path: Path, partner_name: str) -> ParameterFile:
-    """Read the parameter file of a partner.
+    """Read the parameter file of a partner FMU.
 
     Raises ValueError with one line that names the file, the entry and what is allowed.
     """

@@ -1,1 +1,4 @@
-"""Verification files inside an FMU: experiments, inputs and reference results by the standard FMI-LS-REF."""
+"""Proof of an FMU: experiments with reference results inside the FMU, by the standard FMI-LS-REF.
+
+Any importer can repeat the experiments and compare its outputs.
+"""

@@ -18,9 +18,9 @@ from .reference import round_to_digits
 OPEN_END_DISTANCE_RATIO = 1e-6
 """Distance of a boundary value from an open end over the width of the interval [1]."""
 BISECTION_STEPS = 5
-"""Bisection steps [1]."""
+"""Number of bisection steps [1] for a boundary value that the joint accepts."""
 INWARD_SHIFT_RATIO = 0.02
-"""Shift from the last accepted value to that of the file, over their distance [1]: round-off margin."""
+"""Shift from the last accepted value towards that of the file, over their distance [1]: round-off margin."""
 
 
 def find_boundary_values(

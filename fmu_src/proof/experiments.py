@@ -21,13 +21,13 @@ from .reference import Stimulus, compute_results, list_start_values, round_to_di
 from .series import TimeSeries
 
 RAMP_LEVEL_COUNT = 20
-"""Number of levels of the load ramp [1]."""
+"""Number of levels of the driven input on the load ramp [1]."""
 SMOKE_LEVEL_COUNT = 4
-"""Number of levels of the smoke test and of the shipped models [1]."""
+"""Number of levels of the driven input in the smoke test and for shipped parameter files [1]."""
 MIN_LEVEL_COUNT = 2
-"""Number of levels of boundary values and samples [1]."""
+"""Number of levels of the driven input for boundary values and random parameters [1]."""
 QUARTER_CYCLE_LEVEL_COUNT = 6
-"""Number of levels of a quarter cycle of the loop [1]."""
+"""Number of levels of the driven input in a quarter cycle of the loop [1]."""
 LOOP_CYCLE_COUNT = 1
 """Number of cycles of the loop after first loading [1]."""
 SAMPLING_INTERVAL_RATIO = 0.25
@@ -35,8 +35,9 @@ SAMPLING_INTERVAL_RATIO = 0.25
 SAMPLE_COUNT = 6
 """Number of experiments in which all parameters are varied [1]."""
 _REFUSAL_ERRORS = (ValueError, RuntimeError, ArithmeticError)
+"""Errors by which a joint refuses parameters or inputs."""
 PARAMETER_VARIATION_HALF_WIDTH = 0.01
-"""Half width of the parameter variation [1]: a test plan, no statement on the uncertainty of parameters."""
+"""Half width of the parameter variation over the parameter's value [1]: a test plan, no uncertainty."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +89,7 @@ def compute_experiments(model: Model, parameters: ParameterFile) -> list[Referen
 def list_shipped_variants(
     model: Model, parameters: ParameterFile
 ) -> list[tuple[ParameterFile, dict[str, object]]]:
-    """Parameter files with the same C code: the given one, then shipped ones, each with {variable: value}.
+    """List (parameter file, {variable: value}) of the given file and the shipped files with the same C code.
 
     Hidden numbers (no FMU variables) keep the values of the parameter file. Shipped files that differ in
     other values, on which the C code depends, are left out.
@@ -124,7 +125,7 @@ def _load_shipped_files(joint_name: str, folder: Path) -> tuple[ParameterFile, .
 
 
 def make_uncertainty_study(model: Model, parameters: ParameterFile) -> dict[str, str]:
-    """{parameter: distribution} of the uncertainty experiments, in the notation of study files."""
+    """{parameter: distribution} of the experiments with varied parameters, in the notation of study files."""
     return dict.fromkeys(
         _list_varied_parameters(model, parameters), f"+-{PARAMETER_VARIATION_HALF_WIDTH:.0%}"
     )
@@ -207,6 +208,7 @@ def _compute_boundary_experiments(model: Model, parameters: ParameterFile) -> It
     computed: dict[tuple[str, object], ReferenceExperiment] = {}
 
     def is_accepted(name: str, value: object) -> bool:
+        """Whether the joint computes finite outputs with the parameter at this value."""
         value_text = str(value).lower() if isinstance(value, bool) else f"{value:.9g}"
         with suppress(*_REFUSAL_ERRORS):
             computed[name, value] = _compute_ramp(

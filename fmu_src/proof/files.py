@@ -40,10 +40,14 @@ _PURPOSE_TITLES = {
     "validation": "Load ramp, loop, shipped models, neighbours of refusals",
     "uncertainty-analysis": "Samples of all real parameters",
 }
+"""{purpose of experiments: heading in the explaining text}."""
 
 
 class RelatedFile(NamedTuple):
-    """File listed in the manifest; experiments have labels {interface type: how they are run}."""
+    """File listed in the manifest of reference files; experiments have labels of their interface types.
+
+    interface_labels : {interface type: how an experiment is run}
+    """
 
     file_path: str
     mime_type: str
@@ -71,6 +75,7 @@ def make_reference_files(
     interfaces = dict(list(_RUN_INSTRUCTIONS.items())[: 2 if is_native else 1])
 
     def add_file(file_path: str, mime_type: str, role: str, doc: str, content: bytes) -> None:
+        """Add a file and its entry of the manifest."""
         members[file_path] = content
         labels = interfaces if mime_type == standard.EXPERIMENTS_TYPE else {}
         related.append(RelatedFile(file_path, mime_type, role, doc, labels))

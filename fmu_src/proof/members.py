@@ -12,6 +12,7 @@ from .experiments import (
 from .files import make_reference_files
 
 _MAX_CACHED_RESULTS = 16
+"""Largest number of FMUs whose experiments are kept in this process [1]."""
 _cached_experiments: dict[tuple[str, str], tuple[ReferenceExperiment, ...]] = {}
 """{(FMU, text of its parameter file): its experiments}; the newest entry is last."""
 

@@ -97,10 +97,12 @@ def _integrate_model(
     inputs = {**inputs, stimulus.input_name: float(stimulus.levels[0])}
 
     def outputs_at(time: float, state_values: Array) -> Outputs:
+        """Outputs of the model at a time and state."""
         states = dict(zip(names[: model.state_count], map(float, state_values), strict=True))
         return model.evaluate(tabulated_joint, {**inputs, **states, "time": time})
 
     def state_rates(time: float, state_values: Array) -> list[float]:
+        """Time derivatives of the states."""
         values = outputs_at(time, state_values)
         return [values[name] for name in names[1 : model.state_count + 1]]
 

@@ -28,7 +28,7 @@ class TimeSeries:
         return np.asarray(np.interp(times, self.time, self.columns[column_name]))
 
     def interpolate_left(self, column_name: str, times: Array) -> Array:
-        """Interpolate a column as `interpolate`, but take the value before a jump."""
+        """Interpolate a column linearly at times (m) [s]; at a jump, take the value before it."""
         return np.asarray(np.interp(-times, -self.time[::-1], self.columns[column_name][::-1]))
 
     def interpolate_constant(self, column_name: str, times: Array) -> Array:

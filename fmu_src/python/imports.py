@@ -46,5 +46,5 @@ def _list_imports(text: str, package: str) -> Iterator[str]:
 
 @cache
 def _parse_module(text: str) -> ast.Module:
-    """Syntax tree of a module text; cached, as other FMUs contain mostly the same modules."""
+    """Syntax tree of the text of a module; cached, because FMUs contain mostly the same modules."""
     return ast.parse(text)

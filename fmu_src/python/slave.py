@@ -1,4 +1,4 @@
-"""pythonfmu slave of all FMUs of the flavour python; the physics is in the package, not here."""
+"""FMU instance (pythonfmu slave) of the flavour python; the physics is in the package jointfmu, not here."""
 
 import ctypes
 import json
@@ -32,7 +32,7 @@ from jointfmu.version import __version__
 
 Result = TypeVar("Result")
 MAX_LISTED_INPUTS = 4
-"""Largest number of inputs in a refusal."""
+"""Largest number of inputs that an error message lists [1]."""
 LOST_START_VALUE_KEY = -1
 """Key, in `warned_keys`, of the warning of inputs at 0 in place of their start values."""
 
@@ -54,6 +54,7 @@ def protect_references(method: Callable[..., Result]) -> Callable[..., Result]:
 
     @wraps(method)
     def call_protected(self: Any, *args: Any) -> Result:
+        """Call the method; on an exception, add the references that pythonfmu will release."""
         try:
             return method(self, *args)
         except Exception:
@@ -107,7 +108,7 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
             self.register_variable(self._make_variable(item), nested=False)
 
     def _make_variable(self, listed_variable: ListedVariable) -> object:
-        """pythonfmu variable of a listed variable."""
+        """Variable of pythonfmu for a variable of the model description."""
         name = listed_variable.name
         output = listed_variable.causality == "output"
         parameter = listed_variable.causality == "parameter"
@@ -202,7 +203,7 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         self.log(text, Fmi2Status.warning, "logStatusWarning")
 
     def get_inputs(self) -> dict[str, float]:
-        """{input: current value}."""
+        """{input: current value} of the FMU instance."""
         return {v.name: self.values[v.name] for v in self.model.inputs}
 
     def find_start_history(self, inputs: dict[str, float]) -> History:
@@ -247,7 +248,7 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         raise ValueError(message)
 
     def setup_experiment(self, start_time: float, stop_time: float | None, tolerance: float | None) -> None:
-        """Keep the start time: the first step begins there."""
+        """Store the start time of the simulation: the first step begins there."""
         self.start_time = start_time
 
     @protect_references
@@ -274,6 +275,7 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
     set_string = protect_references(Fmi2Slave.set_string)
 
     def _get_fmu_state(self) -> dict[str, object]:
+        """Complete state of the instance, as a dictionary."""
         state = {
             "values": dict(self.values),
             "initialized": self.initialized,
@@ -283,6 +285,7 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
 
     @protect_references
     def _set_fmu_state(self, state: dict[str, Any]) -> None:
+        """Set the complete state of the instance; raises if the state is of another FMU."""
         if state.keys() != self._get_fmu_state().keys() or state["values"].keys() != self.values.keys():
             self.log_and_raise(f"the FMU state is none of {self.modelName}; expected one that this FMU gave")
         changed = any(self.values[name] != state["values"][name] for name in self.start)

@@ -24,12 +24,14 @@ drive = create_drawing_function(
     'jointfmu.drive("CSG-25-100").values["T2"]  # N.m\n48.0',
     first_option="catalogue",
 )
+"""Make a harmonic drive: `jointfmu.drive`."""
 cycloidal_drive = create_drawing_function(
     "cycloidal_drive",
     NEW_CYCLOIDAL_DRIVE_COMMAND,
     "drive = jointfmu.cycloidal_drive(ratio=121, rated_torque=412, rigidity=108, lost_motion=1)\n"
     '>>> drive.values["T2"]  # N.m\n412.0',
 )
+"""Make a cycloidal or RV drive: `jointfmu.cycloidal_drive`."""
 bolted_joint = create_drawing_function(
     "bolted_joint",
     NEW_BOLTED_JOINT,
@@ -38,6 +40,7 @@ bolted_joint = create_drawing_function(
     "... )\n"
     ">>> f\"{plate.values['inputs.preload']:.0f} N\"\n'43110 N'",
 )
+"""Make a bolted joint: `jointfmu.bolted_joint`."""
 gear_contact = create_drawing_function(
     "gear_contact",
     NEW_GEAR_CONTACT,
@@ -46,6 +49,7 @@ gear_contact = create_drawing_function(
     "... )\n"
     '>>> bool(flanks.evaluate(f=2000.0)["K_N"][0] > 1e9)\nTrue',
 )
+"""Make a contact of two tooth flanks: `jointfmu.gear_contact`."""
 gear_mesh = create_drawing_function(
     "gear_mesh",
     NEW_GEAR_MESH,
@@ -54,3 +58,4 @@ gear_mesh = create_drawing_function(
     "... )\n"
     '>>> mesh.values["teeth1"]\n20.0',
 )
+"""Make a gear mesh: `jointfmu.gear_mesh`."""

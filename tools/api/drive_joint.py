@@ -41,7 +41,7 @@ class DriveJoint(Joint):
         return np.asarray(self._midline_curve.derivatives(np.abs(self.wind_up(torque)), 1)[1])[()]
 
     def _warn_beyond_table(self, name: str, values: ArrayLike, end: float, unit: str) -> None:
-        """Warn as the FMU does if a value is beyond the end of the midline."""
+        """Warn, as the FMU does, if a torque or wind-up is beyond the end of the tabulated midline."""
         largest = float(np.max(np.abs(np.asarray(values, dtype=np.float64)), initial=0.0))
         if largest > end:
             text = f"{name} = {largest:.6g} {unit} is outside [-{end:.6g}, {end:.6g}] {unit}"
@@ -49,7 +49,7 @@ class DriveJoint(Joint):
 
     @property
     def _midline_curve(self) -> Curve:
-        """Midline of the hysteresis loop: torque [N.m] over wind-up [rad], both positive."""
+        """Midline of the hysteresis loop: table of torque [N.m] over wind-up [rad], both positive."""
         curve = self.spring.curve
         assert isinstance(curve, Curve)
         return curve

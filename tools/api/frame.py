@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 MAX_CELL_LENGTH = 60
-"""Largest number of characters of a cell in printed text; a notebook shows all."""
+"""Largest number of characters of a table cell in printed text [1]; a notebook shows all."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +67,7 @@ class Table:
 
 
 MAX_END_ROWS = 5
-"""Number of rows that are printed at the start and at the end of long columns."""
+"""Number of rows that are printed at the start and at the end of long columns [1]."""
 
 
 class TableDisplay(ABC):
@@ -85,7 +85,7 @@ class TableDisplay(ABC):
 
 
 class Frame(TableDisplay, Mapping[str, Array]):
-    """Mapping of names to columns (n) of numbers in SI units.
+    """Results of a joint, law or FMU: mapping of names to columns (n) of numbers in SI units.
 
     units    : {name: unit}
     messages : warnings and errors of the FMU, or warnings of the joint or law, one line each
@@ -118,6 +118,7 @@ class Frame(TableDisplay, Mapping[str, Array]):
         return len(self._columns)
 
     def _build_table(self) -> Table:
+        """Table of the columns, with the first and the last rows if there are many."""
         count = max((column.size for column in self._columns.values()), default=0)
         shown = (
             [*range(count)]
@@ -158,7 +159,7 @@ class Frame(TableDisplay, Mapping[str, Array]):
         return Path(path)
 
     def to_pandas(self) -> Any:
-        """Convert to a pandas DataFrame, with the units in `attrs["units"]`. Needs pandas."""
+        """Convert the columns to a pandas DataFrame, with the units in `attrs["units"]`. Needs pandas."""
         import pandas  # type: ignore[import-untyped]
 
         table = pandas.DataFrame(dict(self))

@@ -95,10 +95,11 @@ class Joint(TableDisplay):
 
     @property
     def _title(self) -> str:
+        """First line of the printed joint: its class and the name of the parameter set."""
         return f"{self.name}: {KINDS[self.file.joint].title}, law {self.file.law}"
 
     def _build_table(self) -> Table:
-        """Printed table: facts and warnings, then the parameters without their meaning."""
+        """Table that is printed for the joint: facts and warnings, then parameters without their meaning."""
         texts = (
             (name, " ".join(format_quantity(v, u, 4)), text) for name, (v, u, text) in self.facts.items()
         )
@@ -176,7 +177,10 @@ class Joint(TableDisplay):
     def _evaluate_points(
         self, fmu: str | None, inputs: Mapping[str, ArrayLike], *, each_from_rest: bool
     ) -> Frame:
-        """Evaluate the points one after the other, with inputs broadcast to the same length."""
+        """Evaluate the joint at one point of the inputs after the other.
+
+        Inputs are broadcast to the same length.
+        """
         model = self.model(fmu)
         names = [v.name for v in model.inputs]
         if unknown := [name for name in inputs if name not in names]:
@@ -197,7 +201,7 @@ class Joint(TableDisplay):
 
     @cached_property
     def _opened_joints(self) -> dict[str, JointEngine]:
-        """Joints that are open for evaluation: {name of the FMU: opened joint}."""
+        """Joint libraries that are loaded for evaluation: {name of the FMU: opened joint}."""
         return {}
 
     def __getstate__(self) -> dict[str, Any]:

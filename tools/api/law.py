@@ -46,6 +46,7 @@ class Law(TableDisplay):
         return flatten_parameters(self.parameters)
 
     def _build_table(self) -> Table:
+        """Table that is printed for the law: its parameters."""
         fields = {name: item.metadata for name, item in flatten_fields(type(self.parameters))}
         rows = [
             (name, *format_quantity(value, fields[name].get("unit")), fields[name]["doc"])
@@ -77,6 +78,7 @@ class Law(TableDisplay):
 
     @property
     def _array_parameters(self) -> dict[str, Array]:
+        """Parameters of the law that are arrays: {structured name: array (n)}."""
         return {name: value for name, value in self.values.items() if isinstance(value, np.ndarray)}
 
     def _to_column(self, column_name: str, column_values: ArrayLike) -> Array:
@@ -86,6 +88,7 @@ class Law(TableDisplay):
         return column
 
     def _build_frame(self, state: Mapping[str, Any], messages: tuple[str, ...]) -> Frame:
+        """Columns of the contact quantities, with warnings."""
         names = [
             name for name in (*LAW_COLUMNS, *(n for n in state if n not in LAW_COLUMNS)) if name in state
         ]

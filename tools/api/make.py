@@ -42,7 +42,9 @@ _JOINT_FUNCTION_DOCSTRING = """Make {}.
     >>> import jointfmu
     >>> {}
 """
+"""Docstring of a function that makes a joint from its drawing, with gaps for its options."""
 _OPTION_PATTERN = re.compile(r"--([A-Za-z][\w-]*)")
+"""Pattern of an option of the command line in an error message."""
 
 
 def create_joint(
@@ -80,7 +82,7 @@ def load(source: str | Path) -> Joint:
 
 
 def make_from_drawing(joint_command: NewJointCommand, option_values: Mapping[str, object]) -> Joint:
-    """Make the joint of a drawing.
+    """Make the joint of a drawing from the options of its `jointfmu new` command.
 
     option_values : {option: value}, in the forms that `_to_command_line_value` accepts
 
@@ -135,7 +137,7 @@ def _to_command_line_value(option: Option, option_value: Any) -> object:
 
 
 def _format_value(value: Any) -> str:
-    """Format a number or a text; two numbers become a position X,Y."""
+    """Format a number or a text as on the command line; two numbers become a position X,Y."""
     if isinstance(value, list | tuple | np.ndarray):
         return ",".join(map(_format_value, value))
     return repr(float(value)) if isinstance(value, float) else str(value)
@@ -159,6 +161,7 @@ def create_drawing_function(
     positional, keyword = inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY
 
     def make_joint(*args: object, **options: object) -> Joint:
+        """Make the joint of the drawing from keyword arguments."""
         arguments = signature.bind(*args, **options).arguments
         with _rename_options_in_errors():
             return make_from_drawing(joint_command, arguments)
@@ -184,11 +187,12 @@ def create_drawing_function(
 
 
 def _option_help(option: Option) -> str:
+    """Line of the docstring for an option of a drawing: name, meaning, default."""
     return f"{option.help_text}{': ' + ', '.join(option.choices) if option.choices else ''}"
 
 
 def make_fit_table(outcome: FitResult) -> Table:
-    """Table of a fit: each parameter with its uncertainty; doubts and notes as lines."""
+    """Table of the result of a fit: each parameter with its uncertainty; doubts and notes as lines."""
     rows = [
         (
             row["name"],
@@ -234,6 +238,7 @@ class Fit(TableDisplay):
         return create_joint(self.outcome.parameters, self.outcome.facts, self.outcome.warnings())
 
     def _build_table(self) -> Table:
+        """Table that is printed for the fit: each parameter with its uncertainty."""
         return make_fit_table(self.outcome)
 
     def plot(self) -> "Figure":
@@ -244,7 +249,7 @@ class Fit(TableDisplay):
 def _procedure_paths(
     procedure: str, takes_several_files: bool, file: str | Path | Sequence[str | Path]
 ) -> Path | list[Path]:
-    """Convert the argument `file` to what a procedure takes: one path, or a list of paths."""
+    """Convert the argument `file` of `fit` to what a procedure takes: one path, or a list of paths."""
     if isinstance(file, str | Path):
         return [Path(file)] if takes_several_files else Path(file)
     if not takes_several_files:

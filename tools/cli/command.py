@@ -54,6 +54,7 @@ class CommandResult:
 
 
 CommandFunction = Callable[[argparse.Namespace], CommandResult]
+"""Function that runs a command with its parsed arguments."""
 SubParsers: TypeAlias = "argparse._SubParsersAction[Parser]"
 """Group of sub-parsers to which commands are added."""
 DEFAULT_SUBCOMMANDS = {"surface": ("identify", "synthesize")}
@@ -103,6 +104,7 @@ class Parser(argparse.ArgumentParser):
 
 
 _METAVAR_BY_TYPE: dict[type, str] = {float: "VALUE", int: "N", Path: "FILE", str: "NAME"}
+"""{type of a value: placeholder of the value in the help}."""
 
 
 def declare_argument(
@@ -114,7 +116,7 @@ def declare_argument(
     alias: str | None = None,
     **options: Any,
 ) -> None:
-    """Declare an argument that takes values of a type. The help text names its default.
+    """Declare an argument of a command that takes values of a type. The help text names its default.
 
     alias : second name of the option
     """
@@ -190,6 +192,7 @@ def parse_setting(text: str) -> tuple[str, Any]:
 
 
 def _parse_setting_argument(text: str) -> tuple[str, object]:
+    """Parse `NAME=VALUE` for argparse, which needs its own error class."""
     try:
         return parse_setting(text)
     except ValueError as error:

@@ -13,6 +13,7 @@ from ..common import plots
 from .command import Parser, declare_argument
 
 FORCE_OPTION_HELP = "replace files that jointfmu did not write, or that were edited"
+"""Help text of the option `--force`."""
 
 
 def declare_output(

@@ -20,7 +20,9 @@ COMMAND_GROUPS = {
 }
 """{heading: commands}. The function `add_command` of the module `commands.COMMAND` declares each command."""
 COMMANDS = tuple(name for names in COMMAND_GROUPS.values() for name in names)
+"""Names of all commands."""
 COMPLETION_SHELLS = ("bash", "zsh")
+"""Shells for which a completion script can be printed."""
 COMMAND_MODULES = {
     "cache": "build",
     "catalogue": "new",
@@ -92,7 +94,7 @@ def _iterate_parsers(parser: argparse.ArgumentParser) -> Iterator[argparse.Argum
 
 
 def _option_names(parser: argparse.ArgumentParser, words: Sequence[str]) -> list[str]:
-    """Long options of the command that the words name."""
+    """Long options of the command that the words of a command line name."""
     for word in words:
         subs = [sub for sub in _subparser_actions(parser) if word in sub.choices]
         if not subs:
@@ -102,7 +104,7 @@ def _option_names(parser: argparse.ArgumentParser, words: Sequence[str]) -> list
 
 
 def _insert_subcommand(words: list[str]) -> list[str]:
-    """Insert the default sub-command into the words if they name none."""
+    """Insert the default sub-command into the words of a command line if they name none."""
     names = DEFAULT_SUBCOMMANDS.get(words[0]) if words else None
     if names is None or (words[1:2] and words[1] in (*names, "-h", "--help")):
         return words

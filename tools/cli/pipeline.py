@@ -44,7 +44,7 @@ class PipelineResult:
     system_files : system files (.ssp) and the FMUs that they add
     problems    : errors, one line each
     ramps       : {FMU: its load ramp}
-    proofs      : results of the experiments of each FMU
+    proofs : results of the experiments stored in each FMU, against their references
     checks      : numerical checks of the ramps, resonances and decays
     law_comparisons : laws compared with quadrature of their equations
     validated_points : published points, computed by the package
@@ -138,7 +138,10 @@ def run_pipeline(out_folder: Path) -> PipelineResult:
 
 
 def _validate_and_prove(path: Path) -> tuple[list[str], Proof]:
-    """Validate an FMU with fmpy and run the experiments stored in it; return problems and results."""
+    """Validate an FMU with fmpy and run the experiments stored in it.
+
+    Returns problems, and results of the experiments (the proof).
+    """
     return [f"{report_name(path)}: {problem}" for problem in validate_fmu(str(path))], prove(path)
 
 

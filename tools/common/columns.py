@@ -32,10 +32,11 @@ ColumnHead: TypeAlias = tuple[str, str | None]
 CONTROL_CHARACTERS = re.compile(rb"[\x00-\x08\x0e-\x1f]")
 """Control characters: a file that has them is not a text."""
 _HEADING_PATTERN = re.compile(r"\s*(?P<name>[^\[\]]*?)\s*(?:\[\s*(?P<unit>[^\[\]]*?)\s*\])?\s*$")
+"""Pattern of the heading of a column, `name [unit]`, with the unit optional."""
 _HEADING_WITH_UNIT_PATTERN = re.compile(r"\S.* \[[^\[\]]+\]")
 """Heading of one column as `format_table` writes it: `name [unit]`."""
 MAX_HEADING_BYTES = 65536
-"""Bytes at the start of a file that are searched for its heading."""
+"""Number of bytes at the start of a file that are searched for its heading [1]."""
 _ALTERNATIVE_HEADING_PATTERN = re.compile(
     r"\s*(?P<name>[^()/]*?)\s*(?:\(\s*(?P<one>[^()]+?)\s*\)|/\s*(?P<two>\S+))\s*$"
 )
@@ -44,7 +45,7 @@ _ALTERNATIVE_HEADING_PATTERN = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class Columns:
-    """Columns (n) of a file, in SI units.
+    """Columns (n) of numbers read from a file, in SI units.
 
     columns      : {name: values (n)}
     line_numbers : line number of each row in the file
@@ -57,7 +58,7 @@ class Columns:
     units: Mapping[str, str] = field(default_factory=dict)
 
     def require_column(self, column_name: str, allowed_units: Mapping[str, UnitSizes]) -> Array:
-        """Return the values (n) of a column in SI. Raises ValueError if the file does not have the column."""
+        """Values (n) of a column in SI units. Raises ValueError if the file does not have the column."""
         if column_name not in self.columns:
             raise ValueError(
                 f"{self.path}: has no column {column_name!r}; expected "
@@ -68,7 +69,7 @@ class Columns:
     def check_positive(
         self, column_names: Iterable[str], allowed_units: Mapping[str, UnitSizes]
     ) -> "Columns":
-        """Return self; raise ValueError with the line if a number of the named columns is not positive."""
+        """Return the columns; raise ValueError with the line if a number of the named ones is not > 0."""
         for name in column_names:
             if np.any(wrong := self.columns[name] <= 0.0):
                 first = int(np.argmax(wrong))
@@ -78,7 +79,7 @@ class Columns:
 
 
 def is_table(path: Path) -> bool:
-    """Return whether a file has a heading as `format_table` writes it: every column as `name [unit]`."""
+    """Whether a file has a heading as `format_table` writes it: every column as `name [unit]`."""
     with path.open("rb") as file:
         lines = file.read(MAX_HEADING_BYTES).decode("utf-8", "replace").splitlines()
     head = next((line for line in lines if not line.startswith("#")), "")
@@ -86,9 +87,11 @@ def is_table(path: Path) -> bool:
 
 
 TABLE_FILE_KIND = FileKind("table", (".csv",), is_table)
+"""CSV files with a unit in every heading."""
 PRESSURE_FIELD_FILE_KIND = FileKind(
     "field", (".csv", ".vtu"), lambda path: is_table(path) or MESH_FILE.is_program_file(path)
 )
+"""Files of a contact pressure field: CSV or VTU."""
 
 
 def format_heading(allowed_units: Mapping[str, UnitSizes]) -> str:
@@ -103,7 +106,7 @@ def read_columns(
     aliases: Mapping[str, Sequence[str]] | None = None,
     stated_headings: Mapping[str, ColumnHead] | None = None,
 ) -> Columns:
-    """Read from a file the columns of `allowed_units` that the file has.
+    """Read from a CSV file the columns of `allowed_units` that the file has, in SI units.
 
     allowed_units   : {name: {allowed unit: its size in SI}}
     min_rows        : rows that the file must have at least
@@ -157,7 +160,9 @@ def parse_heading(cell: str) -> ColumnHead:
 
 
 def parse_stated_headings(texts: Sequence[str], column_names: Iterable[str]) -> dict[str, ColumnHead]:
-    """Parse texts `NAME=HEADING` or `NAME=HEADING [UNIT]`: {column: (heading in the file, unit or None)}.
+    """Parse texts `NAME=HEADING` or `NAME=HEADING [UNIT]` by which the user assigns headings to columns.
+
+    Returns {column: (heading in the file, unit or None)}.
 
     Raises ValueError for other text and unknown columns.
     """
@@ -191,7 +196,10 @@ def read_text_lines(path: Path) -> list[str]:
 
 
 def decode_text(file_bytes: bytes) -> str:
-    """Decode UTF-8, else Latin-1. Raises UnicodeDecodeError if Latin-1 text has control characters."""
+    """Decode the bytes of a text file from UTF-8, else from Latin-1.
+
+    Raises UnicodeDecodeError if Latin-1 text has control characters.
+    """
     try:
         return file_bytes.decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -206,25 +214,25 @@ def find_separator(line: str) -> str | None:
 
 
 def split_cells(line: str, delimiter: str | None) -> list[str]:
-    """Split a line into cells. Without a separator the line is one cell: blanks do not separate."""
+    """Split a line of a table into cells; without a separator the line is one cell (blanks are kept)."""
     return next(csv.reader([line], delimiter=delimiter or ","))
 
 
 def _split_rows(lines: Sequence[str], delimiter: str | None) -> list[list[str]]:
-    """Split lines into cells, as `split_cells` does. Lines without quotes are split faster."""
+    """Split the lines of a table into cells. Lines without quotes are split faster."""
     if delimiter is None or any('"' in line for line in lines):
         return [split_cells(line, delimiter) for line in lines]
     return [line.split(delimiter) for line in lines]
 
 
 def check_cell_count(path: Path, line_number: int, cells: Sequence[str], expected_count: int) -> None:
-    """Raise ValueError with the line number if a row does not have `expected_count` cells."""
+    """Raise ValueError with the line number if a row of a table does not have `expected_count` cells."""
     if len(cells) != expected_count:
         raise ValueError(f"{path}: line {line_number} has {len(cells)} columns, expected {expected_count}")
 
 
 def parse_number(cell: str) -> float | None:
-    """Parse a cell as a number with decimal point or comma; None if the cell is not a number."""
+    """Parse a cell of a table as a number with decimal point or comma; None if the cell is no number."""
     try:
         return float(cell if "." in cell else cell.replace(",", ".", 1))
     except ValueError:
@@ -294,7 +302,7 @@ def _find_columns(
 def _identify_column(
     cell: str, allowed_units: Mapping[str, UnitSizes], aliases: Mapping[str, Sequence[str]]
 ) -> ColumnHead:
-    """Identify the column and the unit that a heading means.
+    """Name of the column and unit that a heading means.
 
     The unit may be the end of the name: `joint_speed_rad_per_s`.
     """
@@ -321,7 +329,10 @@ def _resolve_alias(
     allowed_units: Mapping[str, UnitSizes],
     aliases: Mapping[str, Sequence[str]],
 ) -> str:
-    """Return the column that has `heading_name` as an alias and allows the unit; else `heading_name`."""
+    """Column that a heading means: the one that has the name as an alias and allows the unit.
+
+    If there is none: the name itself.
+    """
     for name, words in aliases.items():
         if heading_name in words and name in allowed_units and unit is not None:
             with suppress(ValueError):
@@ -331,6 +342,7 @@ def _resolve_alias(
 
 
 def _parse_column(path: Path, column_name: str, line_numbers: Sequence[int], cells: Sequence[str]) -> Array:
+    """Parse the cells of one column as numbers. Raises ValueError with the line of a wrong cell."""
     try:
         values = np.array([float(cell) for cell in cells])
     except ValueError:  # decimal commas, or cells that are no numbers
@@ -366,7 +378,10 @@ def format_table(
 
 
 def format_rows(columns: Iterable[Column], digits: Sequence[int | None], delimiter: str = ",") -> list[str]:
-    """Format columns (n) as lines, each column with its own digits. Rounded numbers have no negative zero."""
+    """Format columns (n) as lines of text, each column with its own digits.
+
+    Rounded numbers have no negative zero.
+    """
     formats, values = [], []
     for column, count in zip(columns, digits, strict=True):
         exact = count is None or column.dtype.kind != "f"

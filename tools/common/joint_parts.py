@@ -1,4 +1,7 @@
-"""Tool modules of the joints: for each joint, which module of its folder in `tools/joints` serves which tool.
+"""Tool modules of the joints: which module of a joint's folder in `tools/joints` serves which tool.
+
+The `__init__.py` of the folder names the modules (`JointToolModules`). `import jointfmu_tools` reads these
+names; a module is imported when its tool asks for it.
 
 The `__init__.py` of the folder names the modules (`JointToolModules`). `import jointfmu_tools` reads these
 names; a module is imported when its tool asks for it.
@@ -55,10 +58,11 @@ class JointToolModules:
 
     @property
     def folder(self) -> Path:
+        """Path of the joint's folder."""
         return Path(str(import_module(self.package).__file__)).parent
 
     def load_module(self, tool_name: str) -> ModuleType | None:
-        """Import the module for a tool; None if the joint has no such module."""
+        """Import the module of this joint for a tool; None if the joint has no such module."""
         return (
             import_module(f"{self.package}.{self.modules[tool_name]}") if tool_name in self.modules else None
         )

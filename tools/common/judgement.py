@@ -22,7 +22,7 @@ from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array, Number
 
 MAX_STIFFNESS_RATIO = 3.0
-"""Factor [1] above or below the estimate p/(GAMMA h) that makes a stiffness doubtful (docs/validity.md)."""
+"""Factor [1] above or below the estimate p/(GAMMA h) from roughness that makes a stiffness doubtful."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +45,7 @@ class StiffnessComparison:
 
     @property
     def is_doubtful(self) -> bool:
-        """Whether the ratio is above MAX_STIFFNESS_RATIO or below 1/MAX_STIFFNESS_RATIO at any pressure."""
+        """Whether at any pressure the ratio is above MAX_STIFFNESS_RATIO or below 1/MAX_STIFFNESS_RATIO."""
         return bool(np.any((self.ratio > MAX_STIFFNESS_RATIO) | (self.ratio < 1.0 / MAX_STIFFNESS_RATIO)))
 
     def __str__(self) -> str:
@@ -88,7 +88,7 @@ class Plausibility:
         return Plausibility(self.stiffness_comparison, (*extra_warnings, *self.warnings))
 
     def to_json(self) -> dict[str, Any]:
-        """JSON object of the comparison and the warnings: {"level": object or null, "warnings": [...]}."""
+        """JSON object {"level": stiffness comparison or null, "warnings": [...]}."""
         return {
             "level": self.stiffness_comparison and self.stiffness_comparison.to_json(),
             "warnings": list(self.warnings),
@@ -153,5 +153,6 @@ def law_rms_height(law: InterfaceLaw) -> Number | None:
 
 
 def _format_range(values: Array) -> str:
+    """Format numbers as one value, or as their smallest and largest."""
     low, high = float(np.min(values)), float(np.max(values))
     return f"{low:.3g}" if f"{low:.3g}" == f"{high:.3g}" else f"{low:.3g} to {high:.3g}"

@@ -42,7 +42,7 @@ class Option:
 
 
 def format_option_flag(name: str) -> str:
-    """Return the option that sets an argument: `--rated-torque` for `rated_torque`."""
+    """Option of the command line that sets an argument: `--rated-torque` for `rated_torque`."""
     return "--" + name.replace("_", "-")
 
 

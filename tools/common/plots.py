@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 BLUE, RED, GREEN, GREY = "#1f5fa8", "#c1442e", "#2f7d4f", "#777777"
 PICTURE_FORMATS = (".png", ".svg")
+"""File name endings of pictures that can be written."""
 STYLE_SETTINGS: Any = {
     "svg.hashsalt": "jointfmu",
     "svg.fonttype": "path",
@@ -31,8 +32,9 @@ STYLE_SETTINGS: Any = {
     "axes.axisbelow": True,
     "legend.frameon": False,
 }
+"""Settings of matplotlib for all figures."""
 RESOLUTION = 150
-"""Dots per inch of a PNG."""
+"""Resolution of a PNG [dots per inch]."""
 
 
 def check_picture_path(path: str | Path) -> None:
@@ -46,7 +48,7 @@ def check_picture_path(path: str | Path) -> None:
 
 
 def choose_unit(unit: str, values: NDArray[np.float64]) -> tuple[str, float]:
-    """Choose a display unit by the largest of the values; returns the unit and the factor to it."""
+    """Choose a display unit by the largest of some values. Returns the unit and the factor to it."""
     name = display_unit(unit, float(np.max(np.abs(values), initial=0.0)))
     return name, UNITS[unit].display_factors[name]
 

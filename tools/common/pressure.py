@@ -17,7 +17,7 @@ from .judgement import Plausibility, assess_law_stiffness, find_rms_height
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NominalPressureModel:
-    """Nominal contact pressure of a joint as a function of its load.
+    """Nominal contact pressure of a kind of joint as a function of its load.
 
     load_variable   : name of the input or output that is the load
     default_load    : parameter set -> load [SI] that is used if the user states none

@@ -1,4 +1,4 @@
-"""Display of numbers: display units, aligned tables, the entries of a parameter file with their sources."""
+"""Text display of numbers: display units, aligned tables, entries of a parameter file with their sources."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -13,7 +13,9 @@ from jointfmu.quantity import describe_range, flatten_fields
 from jointfmu.quantity.units import conversion_factor, display_unit
 
 STIFFNESS_DISPLAY_UNITS = {"N.m/rad": "N.m/rad", "N/m": "N/um"}
-"""{SI unit: display unit on all pages} of stiffnesses, with the prefix kilo for large ones.
+"""Display units of stiffnesses on all pages: {SI unit: display unit}. Large stiffnesses have the prefix kilo.
+
+Other display units depend on the value.
 
 Other display units depend on the value."""
 _MIN_KILO_VALUE = 1e4
@@ -21,7 +23,7 @@ _MIN_KILO_VALUE = 1e4
 
 
 def choose_display_unit(unit: str, typical_value: float) -> str:
-    """Choose the display unit of a variable by its typical value."""
+    """Choose the display unit of a variable by a typical value in SI units."""
     if unit not in STIFFNESS_DISPLAY_UNITS:
         return display_unit(unit, typical_value)
     shown = STIFFNESS_DISPLAY_UNITS[unit]
@@ -34,7 +36,7 @@ def format_unit(unit: str) -> str:
 
 
 def format_quantity(value: Any, unit: str | None, digits: int = 6) -> tuple[str, str]:
-    """Format a value in a display unit; returns the text and the unit."""
+    """Format a value with its display unit; returns the text of the number and the unit."""
     if isinstance(value, bool | str):
         return str(value).lower(), ""
     if np.ndim(value):
@@ -46,7 +48,7 @@ def format_quantity(value: Any, unit: str | None, digits: int = 6) -> tuple[str,
 
 
 def align_columns(rows: Sequence[Sequence[str]], text_column_count: int | None = None) -> list[str]:
-    """Format rows of cells as lines, columns as wide as their widest cell.
+    """Format rows of text cells as lines, columns as wide as their widest cell.
 
     text_column_count : number of columns of words at the left, aligned left; the others are aligned right;
                         None: all columns are words
@@ -58,7 +60,7 @@ def align_columns(rows: Sequence[Sequence[str]], text_column_count: int | None =
 
 
 def format_facts(facts_by_name: Mapping[str, tuple[float, str, str]]) -> list[str]:
-    """Format facts {name: (value, unit, meaning)} as lines of text, one line for each fact."""
+    """Format facts about a joint, {name: (value, unit, meaning)}, as lines of text, one for each fact."""
     return [
         f"{name:18} {value:.4g}{'' if unit == '1' else f' {unit}'}  {text}"
         for name, (value, unit, text) in facts_by_name.items()
@@ -66,7 +68,7 @@ def format_facts(facts_by_name: Mapping[str, tuple[float, str, str]]) -> list[st
 
 
 def facts_to_json(facts_by_name: Mapping[str, tuple[float, str, str]]) -> dict[str, object]:
-    """Convert facts {name: (value, unit, meaning)} to a JSON object."""
+    """Convert facts about a joint, {name: (value, unit, meaning)}, to a JSON object."""
     return {name: {"value": v, "unit": u, "text": t} for name, (v, u, t) in facts_by_name.items()}
 
 

@@ -1,4 +1,4 @@
-"""Decimation of a fine table: selection of the nodes that a coarser table keeps."""
+"""Decimation of a table with many nodes: selection of the nodes that a table with fewer nodes keeps."""
 
 from collections.abc import Callable, Collection
 
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 def decimate_table(
     fixed_nodes: Collection[int], segment_fits: Callable[[int, int], bool]
 ) -> NDArray[np.intp]:
-    """Thin out a table: select nodes from 0 to the last fixed node, so that segments are as long as allowed.
+    """Select nodes of a table, from 0 to the last fixed node, so that segments are as long as allowed.
 
     fixed_nodes  : indices of nodes that must be kept
     segment_fits : (i, j) -> whether one segment may replace the table from node i to node j > i + 1

@@ -10,7 +10,7 @@ class SourcedNumber(NamedTuple):
     value    : [SI]
     kind     : origin, one of parameters.ORIGINS
     source   : document, table or estimate that the number is taken from
-    bound    : whether the number is printed as an upper limit, not as a value
+    bound    : whether the number is printed as an upper limit of the quantity, not as its value
     interval : lower and upper end of an estimate [SI]; None if unknown
     """
 
@@ -23,7 +23,7 @@ class SourcedNumber(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class CatalogueColumn:
-    """A column of a catalogue: name, SI unit, meaning, and display unit."""
+    """Column of a catalogue of bought joints: name, SI unit, meaning, and display unit."""
 
     name: str
     unit: str
@@ -33,7 +33,7 @@ class CatalogueColumn:
 
 @dataclass(frozen=True, slots=True)
 class CatalogueEntry:
-    """An entry of a catalogue: name of the joint, and {column: number} of the known numbers."""
+    """Entry of a catalogue of bought joints: name of the joint, and {column: number} of the known numbers."""
 
     name: str
     numbers: dict[str, SourcedNumber]

@@ -10,7 +10,9 @@ from jointfmu.quantity import Number
 
 
 def wave_power(frequency: Number, H: Number, G: Number) -> Number:
-    """Phi [m2], height variance per unit of ln(frequency): G^(2(1-H)) frequency^(-2H)/2, frequency [1/m].
+    """Height variance Phi [m2] of a self-affine surface per unit of ln(frequency); frequency [1/m].
+
+    Phi = G^(2(1-H)) frequency^(-2H)/2 with the Hurst exponent H and the roughness G [m].
 
     A wave of length l has the amplitude G^(1-H) sqrt(ln gamma) l^H (Hu 2023, Eqs. 1-3; Zhao 2018,
     Eq. 5; Yu 2022, Eq. 4) and there is one in every ln(gamma). Phi/frequency is the one-sided power
@@ -20,7 +22,7 @@ def wave_power(frequency: Number, H: Number, G: Number) -> Number:
 
 
 def structure_constant(H: Number) -> Number:
-    """C [1] of S(tau) = C G^(2(1-H)) tau^(2H), the structure function of a profile, 0 < H < 1.
+    """Constant C [1] of the structure function S(tau) = C G^(2(1-H)) tau^(2H) of a profile, 0 < H < 1.
 
     C = (2 pi)^(2H) integral_0^inf u^(-1-2H) (1 - cos u) du = (2 pi)^(2H) pi/(2 Gamma(1+2H) sin(pi H)).
     """
@@ -31,7 +33,9 @@ def structure_constant(H: Number) -> Number:
 
 
 def second_difference_ratio(H: Number) -> Number:
-    """V(tau)/S(tau) = 4 - 4^H [1] for a power-law structure function S, with V(tau) = 4 S(tau) - S(2 tau).
+    """Ratio V/S = 4 - 4^H [1] of two structure functions of heights, for a power law S(tau).
+
+    Here V(tau) = 4 S(tau) - S(2 tau).
 
     V is the mean square of the second difference of heights at the lag tau.
     """
@@ -39,7 +43,7 @@ def second_difference_ratio(H: Number) -> Number:
 
 
 def profile_power_ratio(H: Number) -> Number:
-    """kappa [1], ratio of the power Phi of a profile of an isotropic surface to that of the surface.
+    """Ratio kappa [1] of the height variance Phi of a profile to that of its isotropic surface.
 
     kappa = mean of |cos a|^(2H) over all directions a = Gamma(H + 1/2)/(sqrt(pi) Gamma(H + 1)). A wave that
     crosses the profile at an angle appears longer in the profile.
@@ -50,12 +54,15 @@ def profile_power_ratio(H: Number) -> Number:
 
 
 def areal_roughness(G: Number, H: Number) -> Number:
-    """G [m] of the isotropic surface (Hu 2023, Eq. 1) whose profiles have the given G [m]."""
+    """Fractal roughness G [m] of the isotropic surface (Hu 2023, Eq. 1) with given G [m] of profiles."""
     return G * profile_power_ratio(H) ** (-0.5 / (1.0 - H))
 
 
 def zhao_roughness(G: Number, H: Number, gamma: Number) -> Number:
-    """G [m] as defined in Zhao 2018, Eqs. 1 and 30, where the waves do not have the factor sqrt(ln gamma)."""
+    """Fractal roughness G [m] as defined in Zhao 2018, Eqs. 1 and 30.
+
+    The waves there do not have the factor sqrt(ln gamma).
+    """
     return G * np.log(gamma) ** (0.5 / (1.0 - H))
 
 
@@ -86,5 +93,5 @@ def rms_height(
 
 
 def _to_areal_roughness(G: Number, H: Number, is_areal: bool) -> Number:
-    """G [m] of the isotropic surface, from the G [m] of the surface or of its profiles."""
+    """Fractal roughness G [m] of the isotropic surface, from G [m] of the surface or of its profiles."""
     return G if is_areal else areal_roughness(G, H)

@@ -132,7 +132,7 @@ def fractal_surfaces(law_values: dict[str, Any]) -> list[tuple[Number, Number, b
 
 
 def joints_with_law(law: str) -> list[str]:
-    """Names of the joints that have an interface law."""
+    """Names of the joints that can have an interface law."""
     return [
         name for name, kind in KINDS.items() if law in kind.laws and law not in kind.laws_without_interface
     ]

@@ -1,1 +1,1 @@
-"""Running FMUs: importer, ramps and loops, proofs."""
+"""Running FMUs: importer, load ramps and load cycles, proofs (checks of an FMU against its references)."""

@@ -27,8 +27,11 @@ if TYPE_CHECKING:
 _ERROR_STATUS, _WARNING_STATUS = 3, 1
 """Status of a log message in FMI 3.0."""
 _LOGGER_TYPE = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int, ctypes.c_char_p, ctypes.c_char_p)
+"""C type of the log callback of an FMI 3.0 instance."""
 _POINTER_TYPE = ctypes.c_void_p
+"""C type of the pointers of an instance."""
 _SIZE_TYPE = ctypes.c_size_t
+"""C type of array sizes."""
 
 
 class PathResult(NamedTuple):
@@ -43,7 +46,7 @@ class PathResult(NamedTuple):
 
 
 class JointEngine(Protocol):
-    """A joint that can be evaluated along paths of its inputs.
+    """Joint that can be evaluated along paths of its inputs.
 
     model : inputs and outputs of the joint
     """
@@ -64,7 +67,7 @@ class JointEngine(Protocol):
 
 
 def open_joint(model: Model, file: ParameterFile) -> JointEngine:
-    """Open a joint for evaluation: compiled if a library is at hand or can be compiled, else in Python.
+    """Open a joint for evaluation: by its compiled library if there is one or a compiler, else by Python.
 
     Prints one line on standard error, once in a process, if it is evaluated in Python.
 
@@ -79,7 +82,7 @@ def open_joint(model: Model, file: ParameterFile) -> JointEngine:
 
 
 class VariableJoint:
-    """A joint that is evaluated with many parameter sets, for example by a fit or a study.
+    """Joint that is evaluated with many parameter sets, for example by a fit or a study.
 
     Parameters that the FMU exposes are set in the open joint. For other values of the remaining parameters
     the joint is opened again; the last MAX_OPEN_JOINTS stay open.
@@ -96,7 +99,7 @@ class VariableJoint:
         self._set_file(file)
 
     def _set_file(self, file: ParameterFile | None) -> None:
-        """Set the parameters that are changed, and close the open joints."""
+        """Set the parameter file whose values are changed, and close the open joints."""
         self._file = file
         self._engines.clear()
         if file is not None:
@@ -118,7 +121,7 @@ class VariableJoint:
         return self.with_values(values)
 
     def with_values(self, values: Mapping[str, Any]) -> JointEngine:
-        """The joint with values {structured name: value [SI]} in place of those of its file.
+        """Evaluation of the joint with values {structured name: value [SI]} in place of its file's.
 
         An engine that was returned before must not be used any more. Raises ValueError as `open_joint`.
         """
@@ -132,7 +135,7 @@ class VariableJoint:
         return engine
 
     def _find_engine(self, hidden_values: Mapping[str, Any]) -> tuple[JointEngine, dict[str, Any]]:
-        """Joint with other values of hidden parameters, and the values that were set since it is open."""
+        """Open joint with given hidden parameters (not exposed by the FMU), and the values set in it."""
         key = tuple(sorted(hidden_values.items()))
         found = self._engines.pop(key, None)
         if found is None:
@@ -147,6 +150,7 @@ class VariableJoint:
 
 @lru_cache(maxsize=1)
 def _announce_python_evaluation(reason: str) -> None:
+    """Print once, on standard error, that a joint is evaluated in Python, and why."""
     print(
         f"jointfmu: the joint is evaluated by its Python law, which is slow ({reason}); "
         "for the compiled joint: pip install 'jointfmu[build]'",
@@ -173,6 +177,7 @@ class LoadedLibrary:
         messages = self._messages
 
         def log(environment: Any, status: int, category: bytes, text: bytes) -> None:
+            """Callback of the instance: store its log message."""
             messages.append((status, text.decode("utf-8", "replace")))
 
         self._logger = _LOGGER_TYPE(log)
@@ -197,6 +202,7 @@ class LoadedLibrary:
             raise RuntimeError(self._messages[-1][1] if self._messages else "no instance of the library")
 
     def _declare_functions(self) -> None:
+        """Declare argument types of the C functions of the library."""
         lib = self._library
         lib.fmi3InstantiateCoSimulation.restype = _POINTER_TYPE
         lib.fmi3InstantiateCoSimulation.argtypes = [
@@ -222,16 +228,18 @@ class LoadedLibrary:
                     raise ValueError(self._take_error_message())
 
     def _list_references(self, names: Sequence[str]) -> Any:
+        """Value references of variables, as a C array."""
         return np.array([self._references[name] for name in names], np.uint32)
 
     def _take_error_message(self) -> str:
+        """Last error message of the instance, which is then cleared."""
         text = next((text for status, text in reversed(self._messages) if status >= _ERROR_STATUS), "refused")
         self._messages.clear()
         return text
 
 
 class CompiledJoint(LoadedLibrary):
-    """A joint that the library of its FMU evaluates. See `JointEngine`.
+    """Joint that is evaluated by the compiled library of its FMU. See `JointEngine`.
 
     Raises ImportError if the library must be compiled and a package is missing, RuntimeError if the compiler
     fails or compiles for no such platform, OSError if the library cannot be loaded.
@@ -247,6 +255,7 @@ class CompiledJoint(LoadedLibrary):
         self._start_row = np.array([[float(file.start_value(name)) for name in inputs]])
 
     def _declare_functions(self) -> None:
+        """Declare argument types of the C function that follows a path."""
         super()._declare_functions()
         self._library.jointfmu_follow_path.restype = _SIZE_TYPE
         self._library.jointfmu_follow_path.argtypes = [
@@ -255,7 +264,7 @@ class CompiledJoint(LoadedLibrary):
         ]  # fmt: skip
 
     def follow(self, inputs: Mapping[str, ArrayLike], *, each_from_rest: bool = False) -> PathResult:
-        """See `JointEngine.follow`."""
+        """Evaluate the joint along a path of inputs from the virgin state, see `JointEngine.follow`."""
         sizes = {np.size(column) for column in inputs.values()} - {1}
         values = np.repeat(self._start_row, next(iter(sizes), 1), axis=0)
         for name, column in inputs.items():
@@ -277,7 +286,7 @@ class CompiledJoint(LoadedLibrary):
 
 
 def _close_library(library: Any, instance: Any, logger: Any, folder: str) -> None:
-    """Free the instance, unload the library and remove its folder.
+    """Free the instance of a library, unload the library and remove its folder.
 
     logger : callback of the instance, an argument only to keep it alive until here
     """
@@ -293,7 +302,7 @@ def _close_library(library: Any, instance: Any, logger: Any, folder: str) -> Non
 
 
 class PythonJoint:
-    """A joint that its Python law evaluates. See `JointEngine`."""
+    """Joint that is evaluated by its Python law. See `JointEngine`."""
 
     def __init__(self, model: Model, file: ParameterFile) -> None:
         self.model = model
@@ -302,12 +311,12 @@ class PythonJoint:
         self._joint: Any = model.tabulate(file.values)
 
     def set_parameters(self, values: Mapping[str, Any]) -> None:
-        """See `JointEngine.set_parameters`."""
+        """Set parameters by structured name [SI], see `JointEngine.set_parameters`."""
         self._values |= values
         self._joint = None
 
     def follow(self, inputs: Mapping[str, ArrayLike], *, each_from_rest: bool = False) -> PathResult:
-        """See `JointEngine.follow`."""
+        """Evaluate the joint along a path of inputs from the virgin state, see `JointEngine.follow`."""
         if self._joint is None:
             self._joint = self.model.tabulate(build_parameter_set(self._parameter_class, self._values))
         model, joint = self.model, self._joint

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from fmpy.model_description import ModelDescription
 
 _LIBRARY_LOCK = Lock()
-"""Lock while a library is loaded: loading changes the working folder, which all threads share."""
+"""Lock that is held while a library is loaded: loading changes the working folder of all threads."""
 
 
 class LogMessage(NamedTuple):
@@ -31,7 +31,7 @@ class LogMessage(NamedTuple):
 
 
 class Instance:
-    """An instance of an FMU that is unpacked in a folder.
+    """Running instance of an FMU that is unpacked in a folder.
 
     description : model description of fmpy
     variables   : {name: variable of the model description}
@@ -90,6 +90,7 @@ class Instance:
         self.fmu.instantiate(callbacks=callbacks, loggingOn=logging)
 
     def _log(self, status: int, category: bytes | None, text: bytes) -> None:
+        """Callback of the FMU: store a log message."""
         shown = text.decode("utf-8", "replace")
         self.messages.append(LogMessage(status, shown, (category or b"").decode("utf-8", "replace")))
         if status:
@@ -104,12 +105,12 @@ class Instance:
             self.fmu.enterInitializationMode(startTime=start_time, stopTime=stop_time)
 
     def set_values(self, values: Mapping[str, object]) -> None:
-        """Set variables of any type, one call each."""
+        """Set variables of the FMU, of any type, with one call for each."""
         for name, value in values.items():
             getattr(self.fmu, f"set{self._fmi_type(name)}")([self.variables[name].valueReference], [value])
 
     def get_value(self, variable_name: str) -> Any:
-        """Read the value of a variable of any type."""
+        """Read the value of a variable of the FMU, of any type."""
         return getattr(self.fmu, f"get{self._fmi_type(variable_name)}")(
             [self.variables[variable_name].valueReference]
         )[0]
@@ -136,12 +137,12 @@ class Instance:
         return tuple(self.fmu.newDiscreteStates() if self.version == 2 else self.fmu.updateDiscreteStates())
 
     def free_instance(self) -> None:
-        """Free the instance."""
+        """Free the instance of the FMU."""
         self.fmu.freeInstance()
 
 
 class RealVariables:
-    """Real variables of an instance that are set or read in one call. The arrays are reused."""
+    """Group of real variables of an instance that are set or read in one call. The arrays are reused."""
 
     def __init__(self, instance: Instance, names: Sequence[str]) -> None:
         n = len(names)
@@ -156,12 +157,12 @@ class RealVariables:
         )
 
     def set_values(self, *values: float) -> None:
-        """Set all variables."""
+        """Set all variables of the group."""
         self._values[:] = list(values)
         self._set(*self._arguments)
 
     def get_values(self) -> list[float]:
-        """Read all variables."""
+        """Read all variables of the group."""
         self._get(*self._arguments)
         return list(self._values)
 
@@ -215,6 +216,7 @@ def read_description(fmu: str | Path) -> "ModelDescription":
 
 @lru_cache(16)
 def _read_cached_description(fmu: str, file_version: tuple[int, ...]) -> "ModelDescription":
+    """Read a model description; cached by file and version of the file."""
     from fmpy import read_model_description
 
     with archives.open_archive(fmu) as archive:
@@ -254,7 +256,7 @@ def unpack_fmu(fmu: str | Path, model_exchange: bool = False) -> "Iterator[tuple
 
 
 def is_needed_to_run(member_path: str) -> bool:
-    """Return whether a file inside an FMU is needed to run it here: description, resources, binaries."""
+    """Whether a file inside an FMU is needed to run it here: description, resources, binaries."""
     from fmpy import platform, platform_tuple
 
     needed = ("modelDescription.xml", "resources/", f"binaries/{platform}/", f"binaries/{platform_tuple}/")

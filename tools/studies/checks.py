@@ -21,9 +21,9 @@ from .published.reference import PublishedPoint, read_points
 from .published.validation import ValidatedPoint, compare_point
 
 _COARSE_STEP_FACTOR = 10.0
-"""Step of the repeated ramp over the step of the default ramp [1]."""
+"""Step of the repeated load ramp over the step of the default ramp [1]."""
 _SIMPSON_INTERVALS = 10_000
-"""Intervals of the Simpson rule between two ends of an integral [1]."""
+"""Number of intervals of the Simpson rule between two ends of an integral [1]."""
 FmuEvaluation = Callable[[PublishedPoint, Path], float | None]
 """(published point, folder of the FMUs) -> value computed by an FMU; None if no FMU has this quantity."""
 INTEGRATION_TOLERANCE = 1e-6
@@ -37,7 +37,7 @@ of the same law."""
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """Result of one check of an FMU.
+    """Result of one numerical check of an FMU.
 
     compared_quantity : what is compared
     deviation         : largest relative deviation [1]
@@ -51,7 +51,7 @@ class Check:
 
     @property
     def is_passed(self) -> bool:
-        """Whether the deviation is within the tolerance; False for NaN."""
+        """Whether the deviation of the check is within its tolerance; False for NaN."""
         return bool(self.deviation <= self.tolerance)
 
 
@@ -86,7 +86,10 @@ def compare_flavour(fmu_name: str, folder: Path, expected_ramp: ramp.RampResult)
 
 
 def _coarse_ramp_deviation(fmu_name: str, folder: Path, ramp_result: ramp.RampResult) -> float:
-    """Largest deviation [1] of any column between the ramp with ten times larger steps and `ramp_result`."""
+    """Largest deviation [1] of any output if the load ramp has ten times larger steps.
+
+    ramp_result : load ramp with the default steps
+    """
     coarse = run_default_ramp(fmu_name, folder, _COARSE_STEP_FACTOR).columns
     return max(
         relative_deviation(coarse[column], fine[:: int(_COARSE_STEP_FACTOR)])
@@ -131,7 +134,10 @@ def integrate_logarithmically(integrand: Callable[[Array], Array], interval_ends
 
 
 def relative_deviation(value: object, expected_value: object) -> float:
-    """Largest difference over the largest expected value [1]; largest |value| if all expected are zero."""
+    """Largest difference of values from expected values, over the largest expected value [1].
+
+    If all expected values are zero: the largest |value|.
+    """
     a, b = np.asarray(value), np.asarray(expected_value)
     scale = float(np.max(np.abs(b)))
     return float(np.max(np.abs(a - b))) / scale if scale > 0.0 else float(np.max(np.abs(a)))

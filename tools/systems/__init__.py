@@ -1,1 +1,1 @@
-"""Systems of joints: their files, archives, simulation and free vibration."""
+"""Systems of joints, bodies and loads: their files, archives, simulation and free vibration."""

@@ -51,7 +51,7 @@ AXIS_VECTORS: Mapping[str, Array] = {"y": np.array([0.0, 1.0, 0.0]), "z": np.arr
 
 @dataclass(frozen=True, kw_only=True)
 class Link(CheckedParameters):
-    """Link of an arm, from its axis to the next axis or to the tip."""
+    """Link of a serial arm, from its axis to the next axis or to the tip."""
 
     length: float = quantity_field("m", "distance from this axis to the next axis, or to the tip", ge=0.0)
     mass: float = quantity_field("kg", "mass of the link with the next drive", gt=0.0)
@@ -143,7 +143,7 @@ class Arm:
         return torques
 
     def axis_inertias(self, q: Array) -> Array:
-        """Inertia (axes) [kg.m2] about each axis at angles q (axes) [rad], with the other axes locked."""
+        """Inertia (axes) [kg.m2] of the arm about each axis at angles q (axes) [rad], other axes locked."""
         count = len(self.links)
         angles = np.broadcast_to(q, (count, count))
         return np.asarray(
@@ -162,7 +162,7 @@ def _rotation_matrices(axis: str, angle: Array) -> Array:
 
 
 def _multiply(matrices: Array, vectors: Array) -> Array:
-    """Products (n, 3) of matrices (n, 3, 3) and vectors (n, 3)."""
+    """Products (n, 3) of rotation matrices (n, 3, 3) and vectors (n, 3)."""
     return np.asarray((matrices @ vectors[:, :, None])[:, :, 0])
 
 
@@ -170,12 +170,13 @@ _MOTION_ENTRIES = {
     "start": quantity_field("s", "start time of the motion", ge=0.0),
     "duration": quantity_field("s", "duration of the motion", gt=0.0),
 }
+"""Entries of the section [arm] for the motion, as dataclass fields."""
 ComponentSections = dict[str, dict[str, object]]
 """{component: its section, as in a system file}."""
 
 
 def read_arm(path: Path, section: object) -> tuple[Arm, ComponentSections, list[tuple[str, str]]]:
-    """Read the section [arm]: the arm, and sections and connections of its components.
+    """Read the section [arm] of a system file: the arm, and sections and connections of its components.
 
     The components of an axis NAME are `NAME_motor`, `NAME_drive`, `NAME_link` and `NAME_load`.
 
@@ -225,7 +226,7 @@ def read_arm(path: Path, section: object) -> tuple[Arm, ComponentSections, list[
 
 
 def _find_gear_ratio(path: Path, name: str, drive: Mapping[str, object]) -> float:
-    """Gear ratio of the drive of an axis: given in its section, or by its parameter file."""
+    """Gear ratio of the drive of an axis: stated in its section, or by its parameter file."""
     model = drive.get("model")
     if model not in MODELS or "ratio" not in MODELS[model].parameter_fields():
         models = [n for n, m in MODELS.items() if "ratio" in m.parameter_fields() and len(m.inputs) >= 4]
@@ -239,7 +240,7 @@ def _find_gear_ratio(path: Path, name: str, drive: Mapping[str, object]) -> floa
 
 
 def _make_axis_sections(arm: Arm, name: str, drive: Mapping[str, object], ratio: float) -> ComponentSections:
-    """Sections of the components of one axis."""
+    """Sections of a system file for the components of one axis of the arm."""
     k = arm.axis_names.index(name)
     link = arm.links[k]
     end = np.array([[link.travel for link in arm.links]])
@@ -262,7 +263,10 @@ def _make_axis_sections(arm: Arm, name: str, drive: Mapping[str, object], ratio:
 
 
 def _make_section(model: str, values: Mapping[str, tuple[float, str]]) -> dict[str, object]:
-    """Section of a component with derived values; values : {name: (value, unit)}."""
+    """Section of a system file for a component with derived values.
+
+    values : {name: (value, unit)}
+    """
     source = "kinematics and inverse dynamics of [arm]"
     return {"model": model} | {
         name: {"value": value, "unit": unit, "kind": "derived", "source": source}

@@ -1,4 +1,4 @@
-"""Simulation of systems: of separate FMUs (FMI 2.0) by a sequential or a parallel master; of an arm as one."""
+"""Simulation of systems: of separate FMUs by a sequential or a parallel master, and of an arm as one FMU."""
 
 from contextlib import ExitStack
 from itertools import accumulate
@@ -59,10 +59,12 @@ def simulate_system(
         current = [0.0] * len(columns)
 
         def set_inputs(component_names: list[str]) -> None:
+            """Set the inputs of components from the outputs of the others."""
             for name in component_names:
                 slaves[name].set_inputs(*[current[k] for k in sources[name]])
 
         def get_outputs(component_names: list[str]) -> None:
+            """Read the outputs of components."""
             for name in component_names:
                 current[spans[name]] = slaves[name].get_outputs()
 

@@ -23,10 +23,10 @@ PERIOD_COUNT = 60
 FINAL_PERIODS = 10
 """Number of last periods [1], whose mean is the final position; friction shifts it from the working point."""
 MAX_HALF_CYCLE_DECREMENT_RATIO = 2.0
-"""Upper bound of ln(amplitude at the start of a half cycle / its mean amplitude) over the damping ratio [1].
+"""Upper bound of the half-cycle decrement over the damping ratio [1].
 
-pi/2 for small damping, here with a margin.
-"""
+The half-cycle decrement is the logarithm of the amplitude at the start of a half cycle over the mean
+amplitude of this half cycle. The ratio is pi/2 for small damping, here with a margin."""
 FREQUENCY_TOLERANCE = 5e-3
 """Relative tolerance [1] of the frequency in a window of a decay, against a loop of equal amplitude."""
 DAMPING_TOLERANCE = 2e-2
@@ -35,12 +35,12 @@ DAMPING_TOLERANCE = 2e-2
 The damping is not compared in the first window, whose two periods take half of the amplitude.
 """
 MIN_AMPLITUDE_RATIO = 0.01
-"""Amplitude over the initial amplitude [1] below which a decay is not evaluated."""
+"""Amplitude over the initial amplitude of a decay [1], below which the decay is not evaluated."""
 
 
 @dataclass(frozen=True, slots=True)
 class Decay:
-    """Free decay about one working point.
+    """Simulated free decay of a body on a joint about one working point.
 
     load               : load on the joint, in SI units
     amplitude          : (n) [m or rad], decreasing
@@ -162,7 +162,9 @@ def _evaluate_loops(
     amplitudes: Array,
     loop_amplitudes: Array,
 ) -> tuple[Array, Array, Array | None]:
-    """Frequency (n) [rad/s], damping ratio (n) [1] by the energy of loops, and half of `eta_loop` (n) [1].
+    """Frequency (n) [rad/s] and damping ratio (n) [1] of a body by the energy of the joint's loops.
+
+    Returns also half of the output `eta_loop` (n) [1].
 
     amplitudes      : (n) [m or rad] at which the loops are evaluated
     loop_amplitudes : (n) [m or rad] of the simulated loops, a little larger
@@ -189,7 +191,10 @@ def _evaluate_loops(
 
 
 def fit_masing_law(loop: loops.HysteresisLoop, viscous_damping: float) -> HysteresisLaw:
-    """Hysteresis law by Masing's rule, whose branch is the mean of the two branches of a loop."""
+    """Hysteresis law that follows Masing's rule, from a simulated loop.
+
+    Its branch is the mean of both branches of the loop.
+    """
     motion, force = loop.motion[loop.cycle_start :], loop.force[loop.cycle_start :]
     half = motion.size // 2
     falling, rising = slice(None, half + 1), slice(half, None)

@@ -17,7 +17,7 @@ ReturnType = TypeVar("ReturnType")
 
 
 class Slave:
-    """Initialized instance of an FMU with selected inputs and outputs; a context manager.
+    """Initialized instance of an FMU with selected inputs and outputs, as a context manager.
 
     start_values : {variable: start value}
     messages     : log messages of the FMU
@@ -51,12 +51,15 @@ class Slave:
             self._entered = entered.pop_all()
 
     def set_inputs(self, *values: float) -> None:
+        """Set the selected inputs."""
         self._call_fmu_function(self._in.set_values, *values)
 
     def get_outputs(self) -> list[float]:
+        """Read the selected outputs."""
         return self._call_fmu_function(self._out.get_values)
 
     def do_step(self, time: float, step_size: float) -> None:
+        """Do one co-simulation step from a time [s] with a step size [s]."""
         self._call_fmu_function(self._fmu.do_step, time, step_size)
 
     def _call_fmu_function(self, function: Callable[..., ReturnType], *arguments: float) -> ReturnType:

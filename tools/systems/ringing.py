@@ -20,7 +20,7 @@ from .system import Component, System, load_systems
 from .wiring import find_signals
 
 STEPS_PER_PERIOD = 100
-"""Communication steps per period [1]."""
+"""Number of communication steps per period of a vibration [1]."""
 PERIOD_COUNT = 25
 """Number of periods of a simulation [1]."""
 RESONANCE_TOLERANCE = 5e-3
@@ -30,16 +30,18 @@ DAMPING_TOLERANCE = 1e-2
 FREQUENCY_CURVE_POINT_COUNT = 41
 """Number of points of a curve over the load [1]."""
 MIN_DEFLECTION_RATIO = 1e-10
-"""Smallest ratio of initial deflection to deflection at the working point [1]: round-off is then 1e-6."""
+"""Smallest initial deflection of a vibration over the deflection of the joint at its working point [1].
+
+Round-off of the vibration is then 1e-6 of its amplitude."""
 MAX_DAMPING_RATIO = 0.1
-"""Largest damping ratio [1]: more leaves too few periods to determine frequency and decrement."""
+"""Largest damping ratio of a vibration [1]: more leaves too few periods to determine the frequency."""
 _MIN_DAMPING_RATIO = 1e-6
 """Damping ratio [1] below which the damping is not compared: the decrement is accurate to 2e-9."""
 
 
 @dataclass(frozen=True, slots=True)
 class FreeVibration:
-    """Free vibration about one working point.
+    """Simulated free vibration of a body on a joint about one working point.
 
     load               : load on the joint, in SI units
     inertia            : inertia or mass of the body [kg.m2 or kg]
@@ -104,11 +106,12 @@ class PlotAxis(NamedTuple):
 
     @property
     def label(self) -> str:
+        """Label of the axis: quantity and unit."""
         return f"{self.name} [{self.unit}]"
 
 
 class SlipDeflection(NamedTuple):
-    """Initial deflection that makes the joint slip, load on the joint (SI units), and description."""
+    """Initial deflection of a body that makes its joint slip, with the load on the joint (SI units)."""
 
     load: float
     deflection: float
@@ -117,7 +120,7 @@ class SlipDeflection(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class VibrationTest:
-    """Vibration test of a joint with a body. A joint defines its test by the constant VIBRATION_TEST.
+    """Vibration test of a kind of joint with a body. A joint defines it by the constant VIBRATION_TEST.
 
     model_name              : FMU of the joint, with motion as input
     motion_inputs           : inputs of the joint: position and speed of the body
@@ -206,15 +209,18 @@ class VibratingJoint:
 
     @property
     def inertia_unit(self) -> str:
+        """Unit of the inertia: kg.m2 or kg."""
         fields = dict(flatten_fields(PARTNERS[self.moving_body.model_name].parameter_class))
         return str(fields[self.inertia_parameter].metadata["unit"])
 
     @property
     def motion_unit(self) -> str:
+        """Unit of the motion: rad or m."""
         return KINDS[self.joint.joint_kind].variables[self.vibration_test.motion_inputs[0]].unit
 
     @property
     def load_unit(self) -> str:
+        """Unit of the load on the joint."""
         return KINDS[self.joint.joint_kind].variables[self.vibration_test.load_variable].unit
 
 
@@ -283,7 +289,10 @@ def simulate_vibrations(
 def frequency_curve(
     vibrating_joint: VibratingJoint, folder: Path, vibrations: Sequence[FreeVibration]
 ) -> tuple[Array, Array]:
-    """Loads (n), evenly spaced over the range of simulated points, and sqrt(K/J) (n) [rad/s] there."""
+    """Curve of the frequency sqrt(K/J) (n) [rad/s] over the load (n).
+
+    The loads are evenly spaced over the range of the simulated points.
+    """
     joint = {**vibrating_joint.parameters, **vibrating_joint.vibration_test.frictionless_parameters}
     path = folder / f"{vibrating_joint.fmu_name}.fmu"
     ends, inertia = [point.load for point in vibrations], vibrations[0].inertia

@@ -30,7 +30,9 @@ from .system import Component, System, load_systems
 from .wiring import find_lag_parameters, find_model, find_signals
 
 _OMS_NAMESPACE = "https://raw.githubusercontent.com/OpenModelica/OMSimulator/master/schema/oms.xsd"
+"""XML namespace of the annotations of OMSimulator."""
 _FMU_TYPE = "application/x-fmu-sharedlibrary"
+"""MIME type of an FMU in an SSP file."""
 
 
 class MasterKind(NamedTuple):
@@ -64,6 +66,7 @@ MASTERS = (
         is_sequential=True,
     ),
 )
+"""Kinds of co-simulation masters for which archives are made."""
 
 
 def format_structure(
@@ -225,6 +228,7 @@ def _list_numbers(text: str) -> dict[str, Any]:
     found: dict[str, Any] = {}
 
     def add_entries(section: Mapping[str, Any], prefix: str) -> None:
+        """Add the numbers of a section of the file."""
         for name, entry in section.items():
             if isinstance(entry, dict) and "value" in entry:
                 found[prefix + name] = entry["value"]
@@ -237,7 +241,10 @@ def _list_numbers(text: str) -> dict[str, Any]:
 
 
 def _build_versions(out: Path, variability: str, fmu_name: str, component: Component) -> list[Path]:
-    """Build the FMU of a component for all FMI versions, which share the compiled model; return the files."""
+    """Build the FMU of a system's component for all FMI versions, which share the compiled model.
+
+    Returns the files.
+    """
     file = (component.parameter_file if component.has_own_fmu else component.base_file) or partner_parameters(
         component.model_name
     )
@@ -293,7 +300,9 @@ def _write_archive(system: System, out: Path, version: str, master: MasterKind) 
 
 
 def list_values(component: Component) -> dict[str, ParameterValue]:
-    """{variable: value} of a component, from the parameter file of its joint and from the system file.
+    """Values {variable: value} that an archive sets in a component's FMU.
+
+    They are those of the parameter file of its joint and of the system file.
 
     Booleans of the parameter file are omitted: they are start values of the FMU, and fmpy reads every Boolean
     of a parameter set as true.

@@ -38,14 +38,16 @@ _EXPERIMENT_ENTRIES = {
     "stop_time": quantity_field("s", "end time of the simulation", gt=0.0),
     "interval": quantity_field("s", "time between two points of the result", gt=0.0),
 }
+"""Entries of the section [experiment], as dataclass fields."""
 _NON_COMPONENT_KEYS = ("schema", "name", "description", "connect", "experiment", "arm")
+"""Top-level keys of a system file that are no components."""
 
 
 @dataclass(frozen=True, slots=True)
 class Component:
     """Component of a system: joint, body or load.
 
-    model_name             : name of its model, of a joint or of a partner
+    model_name             : name of its model, of a joint or of a partner (body or load)
     base_file              : parameter file of a joint, without values of the system; None: a partner
     parameter_file         : parameter file of a joint, with values of the system; None: a partner
     has_own_fmu            : whether the system needs its own FMU of the joint: it names a parameter file or a
@@ -64,7 +66,7 @@ class Component:
 
     @property
     def joint_kind(self) -> str:
-        """Kind of joint; empty for a partner."""
+        """Name of the kind of joint; empty for a partner (body or load)."""
         return self.parameter_file.joint if self.parameter_file else ""
 
     @property
@@ -75,7 +77,7 @@ class Component:
 
     @property
     def parameters(self) -> dict[str, Any]:
-        """{parameter of its FMU: value} given in the system file."""
+        """Parameters of the component's FMU that the system file states: {parameter: value}."""
         constant_inputs, fields = self.constant_inputs, _variable_fields(self.model_name, self.parameter_file)
         return {
             name: value
@@ -114,12 +116,12 @@ class System:
 
     @property
     def joints(self) -> dict[str, Component]:
-        """{name: component} of the joints."""
+        """Joints of the system: {name: component}."""
         return {name: component for name, component in self.components.items() if component.parameter_file}
 
     @property
     def list_values(self) -> dict[str, Any]:
-        """{COMPONENT.NAME: SI value} of all parameters and inputs given in the system file."""
+        """Values of all parameters and inputs that the system file states: {COMPONENT.NAME: SI value}."""
         return {
             f"{component.name}.{name}": value
             for component in self.components.values()
@@ -150,7 +152,7 @@ class System:
         return replace(self, components=components)
 
     def _partners_at(self, flange: str) -> list[str]:
-        """Names of the bodies and loads that are connected to a flange of a joint, not through a joint."""
+        """Names of the partners (bodies and loads) that are connected to a flange of a joint directly."""
         found: set[str] = set()
         new = {flange}
         while new:
@@ -164,7 +166,7 @@ class System:
 def _scale_partner(
     partner: Component, rating_before: FlangeRating, rating_after: FlangeRating, joint_name: str
 ) -> Component:
-    """Body or load scaled from the rated values of one joint to those of another one.
+    """Partner (body or load) scaled from the rated values of one joint to those of another joint.
 
     Loads scale with the rated load, inertias with the rated load over the motion of the flange. A load that
     stays, `ramp_height`, is increased by the friction of the new joint.
@@ -213,7 +215,7 @@ def find_system_file(name: str) -> Path:
 
 @cache
 def _load_shipped(name: str) -> System:
-    """Read a shipped system; cached."""
+    """Read a shipped system by its name; cached."""
     return read_system(find_system_file(name))
 
 
@@ -269,7 +271,7 @@ def _make_system(path: Path, document: Mapping[str, Any]) -> System:
 
 
 def _check_connections(value: Any) -> list[tuple[str, str]]:
-    """Check the value of `connect` and convert it to pairs of ends."""
+    """Check the value of `connect` in a system file, and convert it to pairs of ends."""
     pairs = []
     for pair in value if isinstance(value, list) else [value]:
         if not (isinstance(pair, list) and len(pair) == 2 and all(isinstance(end, str) for end in pair)):

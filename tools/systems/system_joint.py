@@ -15,7 +15,9 @@ PARAMETER_FILE_KEYS = {"parameters", "catalogue"}
 
 
 def load_joint_file(folder: Path, name: str, joint: str, section: Mapping[str, Any]) -> ParameterFile | None:
-    """Load the parameter file that the section `name` gives a joint; None: the section gives none.
+    """Load the parameter file that a section of a system file names for a joint.
+
+    None: the section names no file.
 
     folder : folder of the system file
     joint  : kind of joint

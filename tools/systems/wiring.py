@@ -1,4 +1,4 @@
-"""Signals between the components of a system, derived from the connections of flanges."""
+"""Signals between the components of a system, derived from the connections of flanges in its file."""
 
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
@@ -23,7 +23,7 @@ class Signal(NamedTuple):
 
 
 class ConnectionEnd(NamedTuple):
-    """End of a connection: a flange, a prescribed load (no flange), or the ground (no component).
+    """End of a connection in a system: a flange, a prescribed load (no flange), or the ground (no component).
 
     label               : the end as written in the system file
     variables_by_member : {Modelica member: variable}; of a load {output: output}
@@ -57,7 +57,7 @@ class ConnectionEnd(NamedTuple):
 
 
 def find_model(component: Component) -> Model:
-    """Model of the FMU of a component."""
+    """Model of the FMU of a system's component."""
     if component.parameter_file is None:
         return PARTNERS[component.model_name]
     return MODELS[component.model_name].with_parameters(
@@ -117,7 +117,7 @@ def find_signals(system: System) -> list[Signal]:
 
 
 def find_lag_parameters(system: System) -> dict[str, list[str]]:
-    """{body: its parameters `lag_...`, for the flanges that are connected to a joint}."""
+    """Parameters `lag_...` of bodies: {body: those of the flanges that are connected to a joint}."""
     lag_parameters: dict[str, list[str]] = {}
     for first, second in find_connections(system):
         if first.is_joint and second.component and second.flange:
@@ -156,7 +156,7 @@ def _parse_end(system: System, end_text: str) -> ConnectionEnd:
 
 
 def _check_end_compatibility(first_end: ConnectionEnd, second_end: ConnectionEnd) -> None:
-    """Raise ValueError if two ends are incompatible."""
+    """Raise ValueError if two ends of a connection do not fit, for example torque and force."""
     prefix = f"{first_end.label} and {second_end.label} do not fit"
     if second_end.component is None:
         if not first_end.is_joint:
@@ -202,6 +202,7 @@ def _check_kinematic_loops(connections: Sequence[tuple[ConnectionEnd, Connection
     parents: dict[str, str] = {}
 
     def find_root(name: str) -> str:
+        """Name of the first component of the chain to which a component is connected."""
         while parents.get(name, name) != name:
             name = parents[name]
         return name

@@ -30,7 +30,9 @@ _NOT_REPRESENTABLE_TEXT = (
     "the parameters give a critical spot area of {} m2 or a load that is not representable; "
     "check D (close to the end of its interval?) and extreme values of G, h and others"
 )
+"""Error of a law whose critical area or load over- or underflows; the gap takes the area [m2]."""
 _INVERSION_BLOCK_SIZE = 16384
+"""Number of points [1] whose loads are inverted at once: their arrays fit the processor's cache."""
 
 
 class InterfaceLaw(Protocol):
@@ -79,7 +81,7 @@ class ValidatedLaw(Protocol):
 def newton_step(
     spot_distribution: SpotDistribution, largest_log_area: Number, log_load: Number
 ) -> tuple[Number, Number, Number, Number]:
-    """One safeguarded Newton step for the largest spot that carries a load F: ln F(u) = log_load.
+    """One safeguarded Newton step for the size of the largest spot that carries a load F: ln F(u) = log_load.
 
     u is the log-area of the largest spot [1].
 
@@ -139,7 +141,7 @@ def solve_largest_spot(law: InterfaceLaw, pressure: ArrayLike) -> Array:
 
 
 def get_checked_spot_distribution(law: InterfaceLaw) -> SpotDistribution:
-    """Size distribution of the contact spots of a law, after a check of its range.
+    """Contact spots of a law: size distribution, load, stiffness and area; its loads are checked first.
 
     Raises ValueError if its reference area or its load over- or underflows (D near 1).
     """
@@ -147,7 +149,10 @@ def get_checked_spot_distribution(law: InterfaceLaw) -> SpotDistribution:
 
 
 def _check_distribution_loads(law: InterfaceLaw) -> tuple[SpotDistribution, list[Number]]:
-    """Size distribution of a law, and its loads [N] at the log-areas MIN_LOG_AREA, 0 and MAX_LOG_AREA."""
+    """Contact spots of a law, and their total loads [N] at the log-areas MIN_LOG_AREA, 0 and MAX_LOG_AREA.
+
+    The loads show whether they are representable as floats in the whole range.
+    """
     ends = (MIN_LOG_AREA, 0.0, MAX_LOG_AREA)
     with np.errstate(all="ignore"):
         try:
@@ -165,6 +170,7 @@ def _check_distribution_loads(law: InterfaceLaw) -> tuple[SpotDistribution, list
 
 
 def _solve_log_area(spot_distribution: SpotDistribution, load: Array) -> Array:
+    """Log-areas (...) [1] of the largest spot that carry loads (...) [N], by a bracketed Newton iteration."""
     empty = load <= 0.0
     target = np.log(np.where(empty, 1.0, load))
     u = np.zeros_like(target)
@@ -203,7 +209,7 @@ def evaluate_at_log_area(law: InterfaceLaw, largest_log_area: Number) -> dict[st
 def evaluate_at_pressure(law: InterfaceLaw, pressure: ArrayLike) -> dict[str, Number]:
     """Contact quantities of the nominal area A_0 at nominal pressures (...) [Pa].
 
-    See `evaluate_at_log_area`.
+    Contains the same quantities as the result of `evaluate_at_log_area`: load, stiffness, area, ...
     """
     return evaluate_at_log_area(law, solve_largest_spot(law, pressure))
 

@@ -25,13 +25,13 @@ _MAX_BATCHED_ARRAY_SIZE = 1024
 
 
 def exprel(z: Number) -> Number:
-    """(exp(z) - 1)/z [1], equal to 1 at z = 0."""
+    """Relative exponential (exp(z) - 1)/z [1], equal to 1 at z = 0."""
     zero = z == 0.0
     return np.where(zero, 1.0, np.expm1(z) / np.where(zero, 1.0, z))
 
 
 def exp_integral(x: Number, lower: Number, upper: Number) -> Number:
-    """Integral of exp(x t) over [lower, upper] [1], stable through x = 0.
+    """Integral of exp(x t) over log-areas t in [lower, upper] [1], accurate also near x = 0.
 
     With t = ln a this is `(upper^x - lower^x)/x` of the areas. `lower = None` stands for minus infinity,
     with x > 0.
@@ -126,6 +126,7 @@ class SmoothTerm:
 
     def integrate_over_spots(self, size_exponent: Number, largest_log_area: Number) -> Number:
         def integrand(t: Number) -> Number:
+            """Quantity of a spot times exp(-m t), the integrand over log-areas t."""
             return self.spot_function(np.maximum(t, self.lower_log_area)) * np.exp(-size_exponent * t)
 
         if (
@@ -176,6 +177,7 @@ class SlipTerm:
         upper = np.maximum(clip_regime_bound(self.upper_log_area, largest_log_area), lower)
 
         def integrand(r: Number) -> Number:
+            """Stiffness of a spot times exp(-m t), after the substitution t = t_slip + r^3."""
             t = onset + r**3
             stick = np.maximum(-np.expm1(-self.slip_exponent * r**3), 0.0) ** (1.0 / 3.0)
             return 3.0 * r**2 * stick * np.exp((self.exponent - size_exponent) * t)
@@ -188,7 +190,9 @@ class SlipTerm:
 def clip_regime_bound(
     regime_bound: Number, largest_log_area: Number, value_if_infinite: Number = None
 ) -> Number:
-    """Integration limit: smaller of the bound of a regime and the log-area u of the largest spot.
+    """Integration limit over the log-areas of spots: the bound of a regime, at most u of the largest spot.
+
+    `value_if_infinite` replaces a bound None (infinite).
 
     `value_if_infinite` replaces a bound None (infinite).
     """
@@ -224,7 +228,7 @@ class SpotDistribution:
     kink_log_areas: Sequence[Number] = ()
 
     def sum_over_spots(self, quantity: str, largest_log_area: Number) -> Number:
-        """Sum Q(u) of a quantity over all spots; u is the log-area of the largest spot."""
+        """Sum Q(u) over all spots of a quantity (load, stiffness, area); u: log-area of the largest spot."""
         return (
             self.size_exponent
             * self.size_prefactor
@@ -249,17 +253,26 @@ class SpotDistribution:
 
     @property
     def first_kink(self) -> Number:
-        """First of the kinks; plus infinity if the law has none."""
+        """Smallest log-area [1] at which derivatives of a spline of the stiffness jump.
+
+        Plus infinity for a law without such a spline.
+        """
         return self.kink_log_areas[0] if self.kink_log_areas else np.inf
 
     @property
     def sorted_regime_end_log_areas(self) -> list[float]:
-        """Log-areas [1], ascending, of the ends of the stiffness regimes, and of kinks inside."""
+        """Log-areas [1], ascending, at which the stiffness of a spot changes its regime or has a kink.
+
+        At a kink, derivatives of a spline of the stiffness jump.
+        """
         return sorted({float(end) for end in self.regime_end_log_areas})
 
     @property
     def regime_end_log_areas(self) -> list[Number]:
-        """Log-areas [1] of the ends of the stiffness regimes, and of kinks: numbers or symbols, unsorted."""
+        """Log-areas [1] at which the stiffness of a spot changes its regime or has a kink, unsorted.
+
+        They are numbers or symbols.
+        """
         ends = [
             end
             for term in self.regime_terms["normal"]
@@ -278,6 +291,7 @@ class SpotDistribution:
         ) + self.size_exponent * largest_log_area, self.size_exponent + growth
 
     def _integrate_spots(self, quantity: str, largest_log_area: Number) -> Number:
+        """Integral of a quantity over the spots up to log-area u, without the prefactor of their number."""
         return sum(
             term.integrate_over_spots(self.size_exponent, largest_log_area)
             for term in self.regime_terms[quantity]

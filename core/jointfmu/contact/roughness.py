@@ -26,6 +26,7 @@ MAX_ROUGHNESS_HEIGHT = 1e-4
 
 
 def _declare_height(doc: str) -> Any:
+    """Declare a height of a surface [m]: dataclass field with interval and meaning."""
     return quantity_field(
         "m",
         f"{doc}, measured over the longest wavelength that machining leaves",
@@ -64,7 +65,10 @@ def predicted_stiffness(pressure: Number, h: Number) -> Number:
 
 
 def conflicting_heights(height_name: str) -> tuple[str, ...]:
-    """Names of the heights that must not be stated beside a height: others of the same surface, and `h`."""
+    """Names of the heights that a file must not state together with a height.
+
+    These are the other heights of the same surface, and the combined height `h`.
+    """
     if height_name == "h":
         return tuple(other for other in HEIGHT_FIELDS if other != "h")
     return ({"a": "Rq", "q": "Ra"}[height_name[1]] + height_name[2], "h")

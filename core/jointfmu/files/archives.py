@@ -149,6 +149,7 @@ class FmuMembers(Mapping[str, bytes]):
 
 
 def _check_text_size(path: str | Path, member: zipfile.ZipInfo) -> None:
+    """Raise ValueError if a member of an archive is too large to be read as a whole (MAX_TEXT_SIZE)."""
     if member.file_size > MAX_TEXT_SIZE:
         raise ValueError(
             f"{path}: {member.filename[:80]!r} has {member.file_size} bytes unpacked; "
@@ -157,5 +158,5 @@ def _check_text_size(path: str | Path, member: zipfile.ZipInfo) -> None:
 
 
 def extract_members(archive: zipfile.ZipFile, folder: str | Path, is_included: Callable[[str], bool]) -> None:
-    """Unpack those members of a checked archive whose names the function `is_included` accepts."""
+    """Unpack members of a checked archive into a folder: those whose names `is_included` accepts."""
     archive.extractall(folder, [name for name in archive.namelist() if is_included(name)])

@@ -21,10 +21,13 @@ PROGRAM_MARK = "written by jointfmu"
 _PROGRAM_MARK_PATTERN = re.compile(
     rb'(written|generated) by jointfmu|(generationTool|content)="jointfmu', re.IGNORECASE
 )
+"""Marks, also of earlier versions, in the first bytes of a file that this program wrote."""
 _PROGRAM_MARK_SEARCH_SIZE = 65536
 """Number of bytes [1] at the start of a file in which the mark is searched."""
 _ARCHIVE_DESCRIPTION_NAME_PATTERN = re.compile(r"modelDescription\.xml|SystemStructure\.ssd")
+"""Names of the XML members of FMU and SSP archives that contain the mark."""
 _CHECKSUM_PATTERN = re.compile(rf"# {PROGRAM_MARK}; checksum ([0-9a-f]{{8}})\n")
+"""First line of a parameter file that this program wrote."""
 _FOREIGN_FILE_ENDING_PATTERN = re.compile(
     r"\.(7z|bat|c|cpp|dll|docx|dylib|exe|frd|gz|h|ipynb|jpg|json|jsonl|m|mat|md|npy|npz|odb|pdf"
     r"|ps1|py|pyi|rst|sh|so|ssd|ssv|tar|vtk|xls|xlsx|yaml|yml|zip)"
@@ -69,25 +72,35 @@ def _is_unedited(path: Path) -> bool:
 
 
 def _compute_checksum(text: str) -> str:
+    """Checksum of the text of a parameter file, for its first line: it reveals later edits."""
     return f"{zlib.crc32(text.encode()):08x}"
 
 
 PARAMETER_FILE = FileKind("parameter file", (".toml",), _is_unedited)
+"""Parameter files of joints."""
 HTML_FILE = FileKind("page", (".html", ".htm"))
+"""HTML pages: reports, laboratory, figures."""
 PICTURE_FILE = FileKind("picture", (".png", ".svg"))
+"""Pictures of plots."""
 ARCHIVE_FILE = FileKind("FMU or SSP archive", (".fmu", ".ssp"))
+"""FMUs, and SSP archives of systems."""
 EXCHANGE_FILE = FileKind(
     "text for another tool",
     (".bdf", ".cdb", ".comm", ".csv", ".inp", ".mac", ".mo", ".mjcf", ".urdf", ".xml"),
 )
+"""Text files for finite-element programs, Modelica tools and robot simulators."""
 ACTUATOR_FILE = FileKind("list of actuators", (".json",))
+"""Actuator parameters of a robot, for Isaac Lab."""
 MESH_FILE = FileKind("mesh", (".vtu",))
+"""Meshes with nodal results of finite elements."""
 OUTPUT_FOLDER = FileKind("folder", ())
+"""Folders into which several files are written."""
 _PROGRAM_FILE_ENDINGS = {
     end
     for kind in (PARAMETER_FILE, HTML_FILE, PICTURE_FILE, ARCHIVE_FILE, EXCHANGE_FILE, MESH_FILE)
     for end in kind.endings
 }
+"""Endings of the names of all kinds of files that this program writes."""
 
 
 def write_parameter_text(path: str | Path, text: str) -> None:
@@ -138,7 +151,10 @@ def check_output(path: str | Path, file_kind: FileKind, overwrite: bool = False)
 
 
 def check_outputs(paths: Iterable[Path], file_kind: FileKind, overwrite: bool = False) -> None:
-    """Apply `check_output` to several files of one kind."""
+    """Raise ValueError before the work starts if one of several output files may not or cannot be written.
+
+    All files are of one kind; the errors are those of `check_output`.
+    """
     for path in paths:
         check_output(path, file_kind, overwrite)
 

@@ -1,4 +1,7 @@
-"""Computed results that a program keeps between its processes, for example on the disk.
+"""Computed results that are stored between processes, for example on the disk.
+
+The package `jointfmu` (kernel: laws and joints without tools) stores none itself. The tools set a store when
+they are imported; a python FMU has none.
 
 The kernel keeps none itself. The tools set a store when they are imported; a python FMU has none.
 """
@@ -13,15 +16,16 @@ if TYPE_CHECKING:
 ResultStore = Callable[[str, Callable[[], bytes]], bytes]
 """Function (key, function that computes the bytes) -> bytes, kept or computed."""
 _stores: list[ResultStore] = []
+"""Store of computed results of this process, at most one."""
 
 
 def set_result_store(store: ResultStore | None) -> None:
-    """Set the store of this process; None: every result is computed."""
+    """Set the store of computed results for this process; None: every result is computed anew."""
     _stores[:] = [] if store is None else [store]
 
 
 def compute_once(name: str, arguments: "Sequence[Array]", compute: "Callable[[], Array]") -> "Array":
-    """Compute a result (...) of float64, or read it from the store if the same was computed before.
+    """Array (...) of float64 that a function computes, or that the result store has for the same arguments.
 
     name : text with the name of the computation and all numbers on which it depends besides the arguments
     """
@@ -34,6 +38,7 @@ def compute_once(name: str, arguments: "Sequence[Array]", compute: "Callable[[],
         digest.update(f"\0{argument.shape} ".encode() + np.ascontiguousarray(argument, "<f8").tobytes())
 
     def compute_bytes() -> bytes:
+        """Compute the result, as the bytes of a float64 array."""
         result = compute()
         return f"{' '.join(map(str, result.shape))}\n".encode() + result.astype("<f8").tobytes()
 

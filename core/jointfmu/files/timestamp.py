@@ -1,4 +1,4 @@
-"""Date in written files; reproducible if SOURCE_DATE_EPOCH is set."""
+"""Date and time that are written into output files; reproducible if SOURCE_DATE_EPOCH is set."""
 
 from datetime import UTC, datetime
 from os import environ
@@ -10,7 +10,9 @@ def build_time() -> datetime:
 
 
 def source_date() -> datetime | None:
-    """Date in the variable SOURCE_DATE_EPOCH (seconds since 1970); None if it is not set.
+    """Date and time in the environment variable SOURCE_DATE_EPOCH (seconds since 1970); None if not set.
+
+    It makes written files reproducible.
 
     Raises ValueError if the variable is no such number.
     """

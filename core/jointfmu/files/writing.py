@@ -79,7 +79,7 @@ def _output_descriptor(file_status: os.stat_result) -> int | None:
 
 
 def _write_stream(path: str | Path, data: bytes) -> None:
-    """Write to a device, a pipe, or an output of this process; the latter is flushed first.
+    """Write bytes to a device, a pipe, or an output stream of this process, which is flushed first.
 
     Raises BrokenPipeError if standard output is a pipe whose reader has ended.
     """
@@ -176,4 +176,5 @@ def _create_temporary_file(path: str | Path, target_path: Path) -> Path:
 
 
 def _write_error(path: str | Path, error: OSError) -> ValueError:
+    """ValueError, one line, for an output path that could not be written, from the system's error."""
     return ValueError(f"{path}: cannot be written ({error.strerror}); expected a writable place")

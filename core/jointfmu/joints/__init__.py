@@ -11,6 +11,7 @@ _JOINT_PACKAGES = (
     "gear_contact",
     "gear_mesh",
 )
+"""Subpackages of this folder, one for each joint."""
 KINDS: dict[str, JointKind] = {name: import_module(f".{name}", __name__).KIND for name in _JOINT_PACKAGES}
 """{name of the joint: its description}, in the order of all listings."""
 MODELS: dict[str, Model] = {model.name: model for kind in KINDS.values() for model in kind.models}

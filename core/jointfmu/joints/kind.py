@@ -36,12 +36,15 @@ class FlangeRating(NamedTuple):
 
 
 def use_parameters_as_law(parameters: object) -> object:
-    """Return the parameter set: for a joint whose parameter set is itself the interface law."""
+    """Return a parameter set unchanged.
+
+    It is `extract_law` of a joint whose parameter set is itself the interface law.
+    """
     return parameters
 
 
 def find_no_contradictions(parameters: object) -> Iterable[str]:
-    """Return no contradictions: for a joint with independent parameters."""
+    """Return an empty list of contradictions: for a joint whose parameters are independent."""
     return ()
 
 
@@ -111,7 +114,7 @@ class JointKind:
         return self.package.startswith(f"{__package__}.")
 
     def tabulate(self, parameters: object) -> object:
-        """Joint with the tables computed from a parameter set, see `TabulatedJoint`."""
+        """Joint ready for evaluation: parameter set with the load-displacement table computed from it."""
         return self.models[0].tabulate(parameters)
 
     def default_file(self, law_name: str | None = None) -> Path:

@@ -19,7 +19,7 @@ History = NDArray[np.float64]
 
 
 class TabulatedLaw(Protocol):
-    """Load-displacement curve of a joint, tabulated up to a largest displacement."""
+    """Load-displacement table of a joint, which ends at a largest displacement."""
 
     @property
     def end_point(self) -> tuple[float, float]:
@@ -65,7 +65,7 @@ class Variable:
 
     @property
     def interval(self) -> Interval:
-        """Allowed values of an input: finite, and at least `minimum`."""
+        """Values that an input may have: finite, and at least `minimum`."""
         return Interval.from_bounds(ge=self.minimum)
 
     @property

@@ -28,14 +28,15 @@ MAX_ERROR = 1e-8
 MAX_TABLE_NODES = 2600
 """Largest number of nodes of a table [1], limited by the memory of an FMU instance."""
 MAX_REFINEMENT = 16
-"""Largest refinement factor of the number of steps of a table [1]; factors are 1, 2, 4, ..."""
+"""Largest number of steps of a table over its initial number [1]; ratios 1, 2, 4, ... are tried."""
 MIN_STEPS_PER_LOG_AREA = 12
 """Initial number of steps of the approach curve per unit of log-area [1], doubled until it is accurate."""
 MIN_SPLINE_STEPS_RATIO = 2
-"""Smallest number of steps between two kinks of a law, over the steps per unit of log-area [1]."""
+"""Smallest number of steps between two kinks of a law, over the number per unit of log-area [1]."""
 CLOSING_STEPS = 48
-"""Steps of the table over the closing of the contact [1]."""
+"""Number of steps of the table while the contact closes [1]: from first contact to some elastic spots."""
 GAUSS_RULE = np.polynomial.legendre.leggauss(5)
+"""Nodes and weights of the Gauss-Legendre quadrature of dp/k."""
 _HERMITE_TO_POLYNOMIAL = np.array(  # (y0, s0, c0, y1, s1, c1) on [0, 1] -> coefficients of 1, t, ... t^5
     [
         [1, 0, 0, 0, 0, 0],
@@ -240,6 +241,7 @@ def refine_curve(tabulate_curve: Callable[[int], Curve], initial_step_count: int
 
 
 def _join_curve_pieces(curve_pieces: list[tuple[Array, Array, Array, Array]]) -> Curve:
+    """Join pieces of a curve at their common nodes into one table."""
     x, y, s = (
         np.concatenate([piece[k][bool(i) :] for i, piece in enumerate(curve_pieces)]) for k in range(3)
     )
@@ -289,7 +291,7 @@ def closing_pressure(
 
 
 def closing_length_ratio(p: Number, k: Number, d2p: Number) -> Number:
-    """Length n of the closing over p/k [1], see `closing_pressure`."""
+    """Length of the closing of a contact over p/k at its end [1]: the number n of `closing_pressure`."""
     return 40.0 / (8.0 + np.sqrt(np.maximum(64.0 - 80.0 * d2p * p / k**2, 4.0)))
 
 
@@ -327,7 +329,7 @@ def _tabulate_between_log_areas(
     end_log_area: float,
     steps_per_log_area: int,
 ) -> Curve:
-    """Table of the pressure over the approach: the closing, then the law between two log-areas.
+    """Table of pressure over approach: the closing of the contact, then the law between two log-areas.
 
     steps_per_log_area : number of steps per unit of log-area
     """

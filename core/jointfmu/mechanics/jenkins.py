@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from ..quantity import Array, Number, select
 
 Vector = Sequence[Number]
+"""Components of a force or displacement: one along a direction, two in a plane."""
 ROUND_OFF_TOLERANCE = 1e-14
 """Relative excess over the limit [1] at which a slider still sticks: round-off of a return mapping."""
 AT_LIMIT_TOLERANCE = 1e-12
@@ -21,6 +22,7 @@ AT_LIMIT_TOLERANCE = 1e-12
 MIN_DENOMINATOR = 1e-200
 """Smallest denominator: replaces 0 in divisions by powers of forces and squared displacements."""
 HERMITE_RULE_FACTOR = 1.0 / 12.0
+"""Weight [1] of the end derivatives in the corrected trapezoidal rule (Hermite's rule)."""
 MAX_INVERSE_LIMIT = 1e30
 """Largest value of 1/limit, for limits near zero."""
 
@@ -69,7 +71,7 @@ _MappingResult = tuple[Vector, Vector, Number, Number]
 
 @dataclass(frozen=True, slots=True)
 class ReturnMapping:
-    """Update of one slider, or many, for a displacement increment.
+    """Result of `return_map`: friction force, tangent and loss of one slider, or many, after an increment.
 
     force             : friction force, one or two components
     tangent           : tangent stiffness for a further increment. One direction: along and across it. Plane:
@@ -125,6 +127,7 @@ def project_to_limit(force: Number, friction_limit: Number) -> Number:
 def _return_map_1d(
     force: Vector, predictor: Vector, limit_start: Number, limit_end: Number, stiffness: Number
 ) -> _MappingResult:
+    """Return mapping along one direction: the predictor is clipped to the friction limit."""
     new_force = project_to_limit(predictor[0], limit_end)
     slip = np.abs(predictor[0] - new_force)
     slips = slip > 0.0

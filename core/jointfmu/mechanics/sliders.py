@@ -25,8 +25,9 @@ from .footprint.reproducible import rank_descending, round_to_digits
 from .jenkins import ReturnMapping, SliderUpdate, Vector, compliance, return_map
 
 SMALL_CHANGE_RATIO = 1e-3
-"""Change of the approach over the range of heights of a slider [1] below which its mean stiffness is computed
-from the derivatives at both ends (fourth order): the difference of its limits would cancel."""
+"""Change of the approach over the height interval of a slider [1], below which differences would cancel.
+
+Below, the mean stiffness is computed from the derivatives at both ends (fourth order)."""
 SMALL_CYCLE_RATIO = 3e-2
 """Stiffness times displacement over the load [1] below which the energies of a cycle are computed from
 derivatives of the curve: differences of its loads would cancel."""
@@ -39,7 +40,7 @@ UNIFORM_DEVIATION = 1.0 / np.sqrt(12.0)
 HEIGHTS_BELOW_REFERENCE, SLIDER_HEIGHT_COUNT_ABOVE_REFERENCE = 10, 7
 """Number of slider heights below the reference approach, and between it and the end of the curve [1]."""
 FOUNDATION_SLIDERS = 2 * (HEIGHTS_BELOW_REFERENCE + SLIDER_HEIGHT_COUNT_ABOVE_REFERENCE + 2)
-"""Number of sliders of a foundation with the heights of `slider_heights` [1]."""
+"""Number of sliders of a foundation with the heights of `slider_heights` [1]: two per height interval."""
 MIN_REFERENCE_RATIO, MAX_REFERENCE_RATIO, DEFAULT_REFERENCE_RATIO = 1e-5, 0.1, 1e-3
 """Smallest and largest load at the reference approach, and load that replaces a smaller one, over the load at
 the end of the curve [1]."""
@@ -99,7 +100,7 @@ def heights_after_liftoff(heights: Array, min_approach: ArrayLike) -> Array:
     min_approach : (...) [m] smallest approach so far
 
     Springs above min_approach have lifted off and have no force, so this height can be changed. Springs that
-    touch and lift off periodically are then in another range than springs that stay in contact.
+    touch and lift off periodically are then in another height interval than springs that stay in contact.
     """
     smallest = np.asarray(min_approach, dtype=np.float64)[..., None]
     is_below = heights < smallest
@@ -110,12 +111,14 @@ def heights_after_liftoff(heights: Array, min_approach: ArrayLike) -> Array:
 
 @cache
 def torsion_directions(slider_count: int) -> Array:
-    """Tangential unit vectors (2, n) [1] of the sliders on the circle of a patch.
+    """Directions (2, n) [1] in which a rotation of a patch about its centre moves its sliders.
+
+    They are unit vectors along the tangents of the circle on which the sliders lie.
 
     A rotation theta [rad] of a patch with the circle radius r [m] displaces a slider by r theta times this
-    vector. The two sliders of a range are on opposite sides of the circle: while both stick, a rotation
-    causes no force, and a translation no torque. The angle between adjacent ranges is GOLDEN_RATIO_CONJUGATE
-    times 180 degrees.
+    vector. Two sliders represent the springs between two adjacent heights (a range of springs). They are on
+    opposite sides of the circle: while both stick, a rotation causes no force, and a translation no torque.
+    The angle between the sliders of adjacent ranges is GOLDEN_RATIO_CONJUGATE times 180 degrees.
     """
     angle = np.pi * (GOLDEN_RATIO_CONJUGATE * np.arange(slider_count // 2) % 1.0)
     unit = round_to_digits(np.stack([-np.sin(angle), np.cos(angle)]))
@@ -126,7 +129,10 @@ def torsion_directions(slider_count: int) -> Array:
 
 
 def sum_slider_forces(slider_forces: Array) -> Array:
-    """Resultant (..., 3) of slider forces (..., 2, n): along x, along y, around the centre of the patch."""
+    """Resultant (..., 3) of slider forces (..., 2, n): along x, along y, around the centre of the patch.
+
+    The last is the torque over the radius of the slider circle.
+    """
     around_it = np.sum(torsion_directions(slider_forces.shape[-1]) * slider_forces, axis=(-2, -1))
     return np.concatenate([np.sum(slider_forces, axis=-1), around_it[..., None]], axis=-1)
 
@@ -347,7 +353,7 @@ class Foundation:
         )
 
     def _foundation_tangent(self, xx: Array, xy: Array, yy: Array) -> Array:
-        """Tangent stiffness (..., 6) [Pa/m] of the foundation: xx, xy, yy, and xt, yt, tt with the rotation.
+        """Tangent stiffness (..., 6) [Pa/m] of all sliders: xx, xy, yy, and xt, yt, tt with the rotation.
 
         xx, xy, yy : (..., n) tangent stiffness of the sliders
         """
@@ -433,6 +439,7 @@ class _DisplacementIncrement:
     def from_ends(
         cls, start_approach: ArrayLike, end_approach: ArrayLike, tangential_displacement: Array
     ) -> "_DisplacementIncrement":
+        """Displacement increment between two approaches (...) [m], which get an axis for the sliders."""
         first_approach, last_approach = (
             np.asarray(x, dtype=np.float64)[..., None] for x in (start_approach, end_approach)
         )
@@ -440,7 +447,7 @@ class _DisplacementIncrement:
 
     @property
     def approach_change(self) -> Array:
-        """Change of the approach (..., 1) [m]."""
+        """Approach at the end of the increment minus approach at its start (..., 1) [m]."""
         return np.asarray(self.end_approach - self.start_approach)
 
     @property
@@ -469,7 +476,7 @@ def _cycle_energies(
     pressure_drop: Number,
     energy_excess: Number,
 ) -> tuple[Number, Number]:
-    """Energy loss and elastic energy [J/m2] of a cycle, see `cycle_energies`.
+    """Energy loss and elastic energy [J/m2] of a friction cycle, from differences of pressure and energy.
 
     pressure_drop : [Pa] difference of the pressures at the approach and at the lowest slipped height
     energy_excess : [J/m2] trapezoidal rule minus exact integral of the pressure between both
@@ -530,7 +537,12 @@ def small_cycle_energies(
 def is_small_amplitude(
     friction_coefficient: Number, stiffness_ratio: Number, amplitude: Number, load: Number, stiffness: Number
 ) -> Number:
-    """Whether `small_cycle_energies` holds for an amplitude [m], at a load [Pa] and stiffness [Pa/m]."""
+    """Whether a friction cycle needs `small_cycle_energies`: differences of energies would cancel.
+
+    Arguments: amplitude [m] of the displacement, load [Pa] and stiffness [Pa/m] of the contact.
+
+    At a load [Pa] and stiffness [Pa/m].
+    """
     return amplitude * (stiffness_ratio / friction_coefficient) * stiffness < SMALL_CYCLE_RATIO * load
 
 
@@ -542,7 +554,9 @@ def partial_contact(
     stiffness_ratio: Number,
     friction_coefficient: Number,
 ) -> tuple[Number, ...]:
-    """Partial contact of a range of springs: the approach exceeds its lower height by `approach_excess` [m].
+    """Stiffness and friction limits of the springs between two heights that are partly in contact.
+
+    The approach exceeds the lower height of this range of springs by `approach_excess` [m].
 
     load, stiffness : [Pa], [Pa/m] of the curve minus its tangent at the lower height
     d2p             : [Pa/m2] derivative of the stiffness
@@ -567,7 +581,11 @@ def partial_contact(
 def stick_retention(
     stiffness_start: Number, stiffness_end: Number, is_unloading: Number
 ) -> tuple[Number, Number]:
-    """Fraction of the traction retained [1] and secant stiffness [Pa/m] of a foundation in full stick.
+    """Fraction of the traction [1] that remains if the approach changes while all sliders stick.
+
+    It is 1 if the approach grows. If it decreases, springs lift off and lose their force, and the fraction is
+    below 1. Returns also the secant stiffness [Pa/m] for the tangential displacement, see
+    `retention_and_stiffness`.
 
     See `retention_and_stiffness`.
 

@@ -48,7 +48,7 @@ def describe_range(values: Sequence[float]) -> str:
 
 
 def choice_field(*allowed_values: str | bool, doc: str) -> Any:
-    """Dataclass field for one of some allowed names or booleans; the first is the default."""
+    """Dataclass field for a choice between some names or booleans; the first is the default."""
     return field(default=allowed_values[0], metadata={"allowed": allowed_values, "doc": doc})
 
 
@@ -72,7 +72,10 @@ def name_in_file(declared_field: Field[Any]) -> str:
 
 
 def find_problem(name: str, value: object, declared_field: Field[object]) -> str | None:
-    """Error message, one line with name, value, unit and allowed values; None if the value is valid."""
+    """Error message for the value of a declared field, one line; None if the value is valid.
+
+    It has name, value, unit and allowed values.
+    """
     meta = declared_field.metadata
     if is_symbol(value):
         return None
@@ -104,7 +107,10 @@ def find_problems(
     declared_fields: Mapping[str, Field[Any]],
     missing_names: Collection[str] = (),
 ) -> list[str]:
-    """Error messages for {name: value}: unknown and missing names, and values outside their intervals."""
+    """Error messages for {name: value} of a parameter set, one line for each problem.
+
+    Problems are unknown and missing names, and values outside their intervals.
+    """
     texts = [f"unknown name {name!r}" for name in values if name not in declared_fields]
     if texts:
         texts.append(f"allowed are {', '.join(declared_fields)}")

@@ -110,7 +110,7 @@ def is_symbol(value: object) -> bool:
 
 
 def erf(x: Number) -> Number:
-    """Error function [1] of floats, arrays or symbols."""
+    """Error function erf(x) [1] of floats, arrays or symbols."""
     if is_symbol(x):
         return sys.modules[type(x).__module__.partition(".")[0]].erf(x)
     return np.vectorize(math.erf, otypes=[float])(x)

@@ -16,7 +16,7 @@ ParameterSet = TypeVar("ParameterSet")
 
 @cache
 def _type_hints(cls: object) -> dict[str, object]:
-    """Type hints of the fields of a class, cached."""
+    """Type hints {field: type} of the fields of a parameter set class, cached."""
     return get_type_hints(cls)
 
 
@@ -29,7 +29,7 @@ class ParameterLimit:
     doc: str
 
     def find_problem(self, value: Number, unit: str) -> str | None:
-        """Error message, one line; None if the value lies inside the interval or is a symbol."""
+        """Error message, one line, for a value outside the interval; None if it is inside or a symbol."""
         if self.interval.contains(value):
             return None
         unit = "" if unit == "1" else f" {unit}"
@@ -189,7 +189,10 @@ def _section_name(group_field: Field[object], group_value: object) -> str:
 
 
 def _find_present_section(parameters: Any, name_in_missing_section: str) -> str:
-    """Section of a parameter set that excludes a name, because the name belongs to another alternative."""
+    """File section that a parameter set has as the alternative to the section of a missing name.
+
+    Two sections are alternatives of one group.
+    """
     head, _, rest = name_in_missing_section.partition(".")
     groups = [item for item in fields(parameters) if "group" in item.metadata]
     sections = {_section_name(item, getattr(parameters, item.name)): item for item in groups}
@@ -199,6 +202,7 @@ def _find_present_section(parameters: Any, name_in_missing_section: str) -> str:
 
 
 def _to_float(value: object) -> object:
+    """Convert an integer, or a list of numbers, to floats; other values are unchanged."""
     if isinstance(value, list | tuple):
         return tuple(float(number) for number in value)
     return float(value) if type(value) is int else value

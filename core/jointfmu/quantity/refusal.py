@@ -1,4 +1,7 @@
-"""ValueError that names the setting that would resolve it; a command adds the option to the message."""
+"""Error (ValueError) that names the argument which would resolve it.
+
+A command adds its option to the message.
+"""
 
 
 class InputRefusal(ValueError):

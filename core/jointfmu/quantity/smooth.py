@@ -9,6 +9,7 @@ SMOOTH_STEP_COEFFICIENTS = (10.0, -15.0, 6.0)
 
 
 def _clip_to_unit_interval(x: Number) -> Number:
+    """Clip x to the interval from 0 to 1."""
     return np.minimum(np.maximum(x, 0.0), 1.0)
 
 

@@ -17,7 +17,9 @@ UnitSizes: TypeAlias = Mapping[str, float]
 """{unit: size in SI units}; the first key is the SI unit."""
 
 _FORCE_EXPONENTS = {"kg": 1, "m": 1, "s": -2}
+"""Exponents of the SI base units of the newton."""
 _DEGREE_IN_RAD = 1 / Fraction(degrees(1.0))
+"""Size of a degree in radians, as an exact fraction of a float."""
 _UNIT_SYMBOLS: dict[str, tuple[Fraction | int, dict[str, int]]] = {
     "1": (1, {}),
     "kg": (1, {"kg": 1}),
@@ -40,9 +42,11 @@ _UNIT_SYMBOLS: dict[str, tuple[Fraction | int, dict[str, int]]] = {
 }
 """{symbol: (size in SI units, exponents of the SI base units)}; the radian counts as a base unit."""
 _PREFIX_EXPONENTS = {"G": 9, "M": 6, "k": 3, "c": -2, "m": -3, "u": -6, "µ": -6, "μ": -6, "n": -9}
-"""{prefix: power of ten}, for the symbols in _PREFIXED_SYMBOLS; both Unicode signs for micro."""
+"""{prefix of a unit: power of ten}, for the symbols in _PREFIXED_SYMBOLS; both Unicode signs for micro."""
 _PREFIXED_SYMBOLS = ("m", "s", "rad", "Hz", "N", "Pa", "J", "W")
+"""Symbols of units that may have a prefix (km, mm, ...)."""
 _FACTOR_PATTERN = re.compile(r"([^\W\d_]+|1(?!\d))(\d*)")
+"""Pattern of one factor of a unit: symbol and exponent."""
 _POWER_OF_TEN_PATTERN = re.compile(
     r"[x\u00d7]?\s*(?:1e|10\s?\^\s?|10(?=[⁰¹²³⁴⁵⁶⁷⁸⁹⁻]))([+-]?\d+|[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)\s*[.*·⋅]?\s*(?=\D)"
 )
@@ -50,6 +54,7 @@ _POWER_OF_TEN_PATTERN = re.compile(
 MAX_POWER_OF_TEN = 12
 """Largest absolute exponent of a power of ten before a unit [1]."""
 _SUPERSCRIPT_DIGITS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
+"""Translation of superscript digits to ordinary ones."""
 
 _SPELLING_REPLACEMENTS = (
     (re.compile(r"[·⋅*]"), "."),
@@ -158,6 +163,7 @@ def _parse_symbol(symbol: str, unit: str) -> tuple[Fraction, dict[str, int]]:
 
 
 def _make_unit(unit_name: str, quantity: str, *display_units: str) -> Unit:
+    """Unit of the table UNITS, with factors to its display units."""
     return Unit(
         quantity,
         base_exponents(unit_name),

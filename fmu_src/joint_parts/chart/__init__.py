@@ -18,7 +18,14 @@ _SIGNIFICANT_DIGITS = 7
 
 
 class Series(NamedTuple):
-    """Line or marks of a chart; `marks` is the kind of mark (empty: a line), `titles` names each mark."""
+    """Line or marks of a chart.
+
+    name   : name of the series in the legend
+    x, y   : numbers of the points, in the units of the axes
+    marks  : kind of mark; empty: a line
+    dashed : whether the line is dashed
+    titles : text of each mark, shown under the pointer
+    """
 
     name: str
     x: NumberSequence
@@ -39,12 +46,14 @@ class Panel(NamedTuple):
 
 
 def encode_panels(panels: Sequence[Panel]) -> str:
-    """Encode panels side by side as JSON that is safe inside an HTML page."""
+    """Encode panels of a chart, side by side, as JSON that is safe inside an HTML page."""
 
     def round_numbers(values: Any) -> list[float]:
+        """Round the numbers of a curve to _SIGNIFICANT_DIGITS."""
         return [float(f"{x:.{_SIGNIFICANT_DIGITS}g}") for x in np.asarray(values, dtype=np.float64).tolist()]
 
     def encode_series(chart_series: Series) -> dict[str, Any]:
+        """Encode one line or its marks as a JSON object."""
         return chart_series._asdict() | {
             "x": round_numbers(chart_series.x),
             "y": round_numbers(chart_series.y),
@@ -56,7 +65,7 @@ def encode_panels(panels: Sequence[Panel]) -> str:
 
 
 def make_figure(panels: Sequence[Panel]) -> str:
-    """HTML element of panels, for a page that contains `read_script("figures")`."""
+    """HTML element of a chart with several panels, for a page that contains `read_script("figures")`."""
     return f'<div class="figure"><script type="application/json">{encode_panels(panels)}</script></div>'
 
 
@@ -71,4 +80,5 @@ def read_style() -> str:
 
 
 def _read_file(file_name: str) -> str:
+    """Text of a file in the folder of this module."""
     return Path(__file__).with_name(file_name).read_text(encoding="utf-8")

@@ -30,6 +30,7 @@ from ...joint_parts.interface_table import replace_points
 from ...joint_parts.terminals import make_rotation_flange, make_translation_flange
 
 _REPLACED_SECTIONS = ("pattern.", "plate.", "field.", "bodies.")
+"""Sections of a parameter file whose values the C code reads from the data block instead."""
 MAX_RIGID_SIDE_BOLTS = 64
 """Largest number of bolts [1] of a joint with rigid sides in compiled models; more need a compiler."""
 _ONE_POINT_FIELD = {"share": (1.0,), "x": (0.0,), "y": (0.0,), "equal": (1.0,), "tilt": (0.0,)}
@@ -61,7 +62,10 @@ def _make_single_mode_bodies(bolt_count: int) -> dict[str, object]:
 
 
 def _make_tables(joint: AnyBoltedJoint) -> Mapping[str, DataTable]:
-    """Tables of points, patches, sliders, bolts and modes in the data block."""
+    """{name: table} of numbers of a bolted joint that its C code reads as data.
+
+    These are the contact points, friction patches, sliders, bolts and modes of the members.
+    """
     patches = find_friction_patches(joint.pattern)
     return {
         "points": DataTable(_distribution_rows(contact_points(joint.pattern)), MAX_POINTS),
@@ -73,7 +77,7 @@ def _make_tables(joint: AnyBoltedJoint) -> Mapping[str, DataTable]:
 
 
 def _make_body_tables(joint: AnyBoltedJoint) -> Mapping[str, DataTable]:
-    """Tables of the elastic members: modal stiffness, bolts, modal displacements, pressure transfer.
+    """{name: table} of the elastic members: modal stiffness, bolts, displacements, pressure transfer.
 
     A row has the displacements of one point, patch or bolt by all modes, as 2-byte integers. A joint with
     rigid sides reserves one row for each table, and MAX_RIGID_SIDE_BOLTS rows for the bolts.
@@ -107,14 +111,17 @@ def _make_body_tables(joint: AnyBoltedJoint) -> Mapping[str, DataTable]:
 
 
 def _pressure_transfer_table(force_shares: Any) -> Any:
-    """Rows (n, 4) of index of the patch, index of the point, share in units of the last decimal, and 0."""
+    """Rows (n, 4) of the transfer of normal force from contact points to friction patches.
+
+    Each row has index of the patch, index of the point, share in units of the last decimal, and 0.
+    """
     patch, point = np.nonzero(force_shares)
     digits = np.round(force_shares[patch, point] * 10.0**TRANSFER_DECIMALS)
     return np.column_stack([patch, point, digits, 0 * patch])
 
 
 def _encode_modal_rows(modal_rows: Any) -> Any:
-    """Modal displacements in units of the last decimal, padded with zeros to MAX_MODES modes."""
+    """Modal displacements of the members in units of the last decimal, with zeros up to MAX_MODES modes."""
     return np.pad(
         np.round(modal_rows * 10.0**MODAL_DISPLACEMENT_DECIMALS),
         ((0, 0), (0, MAX_MODES - modal_rows.shape[1])),
@@ -122,7 +129,7 @@ def _encode_modal_rows(modal_rows: Any) -> Any:
 
 
 def _distribution_rows(distribution: PressureDistribution) -> Any:
-    """Rows (n, 5) of area share, x, y, and both pressure ratios of each point."""
+    """Rows (n, 5) of the contact points: area share, x, y, and both pressure ratios."""
     return np.column_stack(
         [
             distribution.area_share,
@@ -138,6 +145,7 @@ LOOP_PRELOAD_RATIO = 0.3
 LOOP_AMPLITUDE_RATIOS = (0.06, 0.12, 0.22, 0.4)
 """Amplitudes of the drawn loops over the displacement at which a point with the mean approach slips [1]."""
 _CURVE_POINT_COUNT = 13
+"""Number of points of a branch of the drawn friction loops [1]."""
 
 
 def _draw_friction_loops(spring: Any, ramp_end_preload: float) -> list[chart.Panel]:
@@ -180,7 +188,9 @@ def _draw_friction_loops(spring: Any, ramp_end_preload: float) -> list[chart.Pan
 
 
 _TRANSLATION_FLANGES = zip("xyz", (75.0, 45.0, 15.0), strict=True)
+"""Axes of the flanges for translations, with their heights in the icon."""
 _ROTATION_FLANGES = zip("xyz", (-15.0, -45.0, -75.0), strict=True)
+"""Axes of the flanges for rotations, with their heights in the icon."""
 
 FMU_PARTS = FmuParts(
     folder=Path(__file__).parent,
@@ -197,3 +207,4 @@ FMU_PARTS = FmuParts(
         )
     },
 )
+"""Builder data of the bolted joint."""

@@ -47,7 +47,7 @@ def _add_functions(function_graph: FunctionGraph, model: Model) -> None:
 
 
 def _add_preload_functions(function_graph: FunctionGraph) -> None:
-    """Add the functions of the pressures under preload and moment."""
+    """Add the C functions of the contact pressures under preload and moment."""
     equal, tilt, mean, by_moment = make_symbols("node", 4)
     preload, moment, temperature = make_symbols("v", 3)
     doc = "preload at tightening, temperature -> preload at this temperature"
@@ -107,7 +107,7 @@ def _add_shear_functions(function_graph: FunctionGraph) -> None:
 
 
 def _add_stick_function(function_graph: FunctionGraph) -> None:
-    """Add the function of a foundation in full stick."""
+    """Add the C function of a foundation of sliders in full stick."""
     stiff, now, falls = make_symbols("x", 3)
     doc = "whether the load decreases, stiffness at both ends -> fraction retained, secant stiffness"
     y = sliders.stick_retention(stiff, now, falls)
@@ -117,7 +117,7 @@ def _add_stick_function(function_graph: FunctionGraph) -> None:
 
 
 def _add_cycle_functions(function_graph: FunctionGraph) -> None:
-    """Add the functions of energy loss and elastic energy of a cycle at constant load."""
+    """Add the C functions of energy loss and elastic energy of a friction cycle at constant load."""
     x = make_symbols("x", 6)
     doc = "mu, K_T/K_N, amplitude, load, load at the slipped height, integral between -> loss, elastic energy"
     function_graph.add_function_with_derivative(
@@ -132,7 +132,7 @@ def _add_cycle_functions(function_graph: FunctionGraph) -> None:
 
 
 def _make_definitions(function_graph: FunctionGraph, model: Model) -> CDefinitions:
-    """Constants for the C code of the bolted joint."""
+    """Constants that the C code of the bolted joint has in common with Python."""
     counts = {f"SUM_{name.upper()}": k for k, name in enumerate(outputs.CONTACT_SUM_NAMES)} | {
         "N_SUMS": len(outputs.CONTACT_SUM_NAMES)
     }
@@ -190,3 +190,4 @@ def _make_definitions(function_graph: FunctionGraph, model: Model) -> CDefinitio
 NATIVE_PART = NativeDefinition(
     _add_functions, (*APPROACH_FILES, *SLIDER_FILES), _make_definitions, friction.history_layout(MAX_PATCHES)
 )
+"""Definition of the C code of the bolted joint."""

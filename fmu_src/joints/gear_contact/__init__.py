@@ -6,7 +6,9 @@ from ...joint_parts import FmuParts, RampPanel, make_native_definition_loader
 from ...joint_parts.terminals import TRANSLATIONAL_FLANGE_CLASS, Terminal
 
 _FLANGE_DOC = "one flank pressed on the other, along the normal"
+"""Description of the flange of the gear contact."""
 _FLANGE_MEMBERS = {"s": ("s_rel", "signal"), "f": ("f", "inflow")}
+"""{Modelica variable of the flange: (variable of the FMU, variableKind of FMI)}."""
 
 FMU_PARTS = FmuParts(
     folder=Path(__file__).parent,
@@ -16,3 +18,4 @@ FMU_PARTS = FmuParts(
         "GearContact": (Terminal("flange", TRANSLATIONAL_FLANGE_CLASS, "a", _FLANGE_DOC, _FLANGE_MEMBERS),)
     },
 )
+"""Builder data of the gear contact."""

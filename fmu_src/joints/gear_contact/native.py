@@ -30,3 +30,4 @@ def _add_functions(function_graph: FunctionGraph, model: Model) -> None:
 
 
 NATIVE_PART = NativeDefinition(_add_functions, APPROACH_FILES)
+"""Definition of the C code of the gear contact."""

@@ -11,3 +11,4 @@ FMU_PARTS = FmuParts(
     ramp_panels={"GearMesh": (RampPanel("phi1", ("f",)), RampPanel("s_rel", ("K",)))},
     terminals={"GearMesh": (make_shaft_flange(1, "a", "wheel 1"), make_shaft_flange(2, "b", "wheel 2"))},
 )
+"""Builder data of the gear mesh."""

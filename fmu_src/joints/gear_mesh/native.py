@@ -37,3 +37,4 @@ NATIVE_PART = NativeDefinition(
     APPROACH_FILES,
     lambda g, model: CDefinitions({"PAIR_CLOSING_STEPS": spring.CLOSING_STEPS}),
 )
+"""Definition of the C code of the gear mesh."""

@@ -49,7 +49,7 @@ def _find_code_parameter_class(drive: DriveParameters) -> type[DriveParameters]:
 
 
 def _convert_parameters(drive: DriveParameters) -> Mapping[str, Any]:
-    """{name: value} of the parameter set with which the C code of a drive is generated."""
+    """{structured name: value} of the parameter set with which the C code of a drive is generated."""
     values = flatten_parameters(drive)
     if not isinstance(drive, TableDriveParameters):
         return values
@@ -58,7 +58,7 @@ def _convert_parameters(drive: DriveParameters) -> Mapping[str, Any]:
 
 
 def _make_tables(drive: DriveParameters) -> Mapping[str, DataTable]:
-    """{"midline": nodes of a measured midline}; empty for other drives."""
+    """Table "midline" of the nodes of a measured midline, as data of the C code; none for other drives."""
     if not isinstance(drive, TableDriveParameters):
         return EMPTY_TABLES
     return {
@@ -67,7 +67,9 @@ def _make_tables(drive: DriveParameters) -> Mapping[str, DataTable]:
 
 
 _STIFFNESS_PANEL = RampPanel("tau", ("K_WTS", "K_TS"))
+"""Chart of the stiffnesses over the torque on the documentation page."""
 _LOCKED_FLANGE_MEMBERS = {"phi": ("phi_rel", "signal"), "tau": ("tau", "inflow")}
+"""{Modelica variable of the output flange: (FMU variable, variableKind)}, wave generator locked."""
 
 FMU_PARTS = FmuParts(
     folder=Path(__file__).parent,
@@ -93,3 +95,4 @@ FMU_PARTS = FmuParts(
         ),
     },
 )
+"""Builder data of the harmonic drive."""

@@ -102,7 +102,7 @@ def _add_functions(function_graph: FunctionGraph, model: Model) -> None:
 
 
 def _is_torque_input(model: Model) -> bool:
-    """Whether the torque is the input and the wave generator is locked."""
+    """Whether the input of a harmonic drive's model is the torque, with the wave generator locked."""
     return model.inputs[0].name == "tau"
 
 
@@ -119,7 +119,7 @@ INTEGER_CONSTANT_NAMES: ModuleConstants = {
 
 
 def _make_definitions(function_graph: FunctionGraph, model: Model) -> CDefinitions:
-    """Constants for the C code of the harmonic drive."""
+    """Constants that the C code of the harmonic drive has in common with Python."""
     counts = {"ARGUMENT_IS_LOAD": int(_is_torque_input(model)), "DRIVE_STEPS": spring.MIN_TABLE_STEPS}
     counts["N_HARMONICS"] = len(KINEMATIC_ERROR_HARMONICS)
     sliders = define_array("STIFFNESS_SHARES", "N_STIFFNESS_SHARES", friction.SLIDER_STIFFNESS_SHARES)
@@ -137,3 +137,4 @@ def _make_definitions(function_graph: FunctionGraph, model: Model) -> CDefinitio
 NATIVE_PART = NativeDefinition(
     _add_functions, (*CURVE_FILES, *SLIDER_FILES), _make_definitions, spring.HISTORY_LAYOUT
 )
+"""Definition of the C code of the harmonic drive."""

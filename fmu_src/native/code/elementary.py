@@ -12,10 +12,13 @@ TABLE_INTERVALS = 32
 LOG_TABLE_START_BITS = 0x3FE6AAAA00000000
 """Bit pattern of the double at which the table of the logarithm begins; 1 lies inside an interval."""
 _BIT_PATTERN_OF_ONE = 0x3FF0000000000000
+"""Bit pattern of the double 1.0."""
 LOG_MANTISSA_BITS = 47
 """Mantissa bits below the interval index: 52 - log2(TABLE_INTERVALS)."""
 _DECIMAL_DIGITS = 60
+"""Number of decimal digits with which the tables are computed [1]."""
 _PI = Decimal("3.1415926535897932384626433832795028841971693993751058209749445923078164")
+"""Pi with more digits than _DECIMAL_DIGITS."""
 _ERF_NODES_PER_UNIT, _ERF_MAX_ARGUMENT, _ERF_TERM_COUNT = 4, 6, 15
 _EXPM1_TERM_COUNT, _SINE_TERM_COUNT = 13, 8
 
@@ -74,13 +77,13 @@ def make_tables_header() -> str:
 
 
 def _format_row(values: Sequence[float]) -> str:
-    """Format one row of a C array."""
+    """Format the values of one row of a table as a C array."""
     text = ", ".join(format_number(value) for value in values)
     return text if len(values) == 1 else f"{{{text}}}"
 
 
 def _round_to_bits(value: Decimal, fraction_bits: int) -> float:
-    """Round a number to a multiple of 2^-bits."""
+    """Round a number to a multiple of 2^-fraction_bits."""
     return float((value * 2**fraction_bits).to_integral_value()) * 2.0**-fraction_bits
 
 

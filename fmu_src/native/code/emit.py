@@ -29,6 +29,7 @@ _BINARY_FORMATS = {
     ca.OP_HYPOT: "scaled_hypot({0}, {1})",
     ca.OP_COPYSIGN: "copysign({0}, {1})",
 }
+"""{CasADi operation with two operands: C expression}."""
 _UNARY_FORMATS = {
     ca.OP_ASSIGN: "{0}",
     ca.OP_NEG: "-{0}",
@@ -53,11 +54,13 @@ _UNARY_FORMATS = {
     ca.OP_NOT: "{0} == 0.0 ? 1.0 : 0.0",
     ca.OP_SIGN: "{0} > 0.0 ? 1.0 : ({0} < 0.0 ? -1.0 : {0})",
 }
+"""{CasADi operation with one operand: C expression}."""
 
 _DERIVATIVE_FORMATS = {
     ca.OP_DIV: "{0} == 0.0 ? 0.0 : {0} / {1}",
     ca.OP_SIGN: "({0} > 0.0 ? 1.0 : 0.0) - ({0} < 0.0 ? 1.0 : 0.0)",
 }
+"""{CasADi operation: C expression} that differ in directional derivatives, see `format_function`."""
 
 C_HELPER_FUNCTIONS = """/* exp(x) - 1; where the difference does not cancel by the faster exponential. */
 static inline double fast_expm1(double x)
@@ -159,6 +162,7 @@ def _move_to_workspace(code_lines: Sequence[str]) -> list[str]:
 
 
 _VALUE_PATTERN = re.compile(r"\b(?:per_)?t\d+\b")
+"""Pattern of the name of an intermediate value in generated C."""
 _Operations = Mapping[str, tuple[int, list[str]]]
 """{name of a value: (CasADi operation, names of its operands)}."""
 
@@ -202,11 +206,13 @@ def _simplify_sum(operand_names: Sequence[str], operations: _Operations) -> str 
 
 
 _SIMPLIFICATIONS = {ca.OP_ADD: _simplify_sum, ca.OP_DIV: _simplify_quotient, ca.OP_MUL: _simplify_product}
+"""{CasADi operation: function that finds a simpler C expression}."""
 _CONDITION_OPERATIONS = (ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE, ca.OP_AND, ca.OP_OR, ca.OP_NOT)
+"""CasADi operations whose result is a condition, 1 or 0."""
 
 
 def _drop_unused_lines(code_lines: Sequence[str]) -> list[str]:
-    """Remove the lines whose value no later line uses."""
+    """Remove lines of generated C whose value no later line uses."""
     lines, used_values = list[str](), set[str]()
     for line in reversed(code_lines):
         name, _, value = line.removeprefix("const double ").partition(" = ")
@@ -218,10 +224,11 @@ def _drop_unused_lines(code_lines: Sequence[str]) -> list[str]:
 
 
 _DIVISION_PATTERN = re.compile(r"const double (t\d+) = (\S+) / (t\d+|x\[\d+\]);")
+"""Pattern of a line of generated C that divides: result, dividend, divisor."""
 
 
 def _replace_repeated_divisions(code_lines: Sequence[str]) -> list[str]:
-    """Replace several divisions by the same number by one reciprocal and products."""
+    """Replace several divisions by the same number in generated C by one reciprocal and products."""
     divisions = [_DIVISION_PATTERN.fullmatch(line) for line in code_lines]
     count = Counter(match[3] for match in divisions if match)
     lines, reciprocals = list[str](), dict[str, str]()

@@ -20,8 +20,11 @@ from .elementary import make_tables_header
 from .law_c import format_law
 
 RUNTIME_FOLDER = Path(__file__).parent.with_name("runtime")
+"""Folder of the hand-written C files of every FMU."""
 _GENERATED_FILES = ("law.h", "law.c", "variables.c", "model.h", "elementary_tables.h")
+"""Names of the generated C files of an FMU, besides data.c."""
 _cached_law_texts: dict[tuple[object, ...], tuple[str, str]] = {}
+"""{structure of the parameters: (text of law.h, text of law.c)} of this process."""
 
 
 def list_runtime_files(law_file_stems: Sequence[str] = ()) -> list[Path]:
@@ -43,7 +46,10 @@ def generate_sources(fmu_name: str, parameters: ParameterFile) -> dict[str, str]
 
 
 def generate_code(model: Model, parameters: ParameterFile, parameter_split: ParameterSplit) -> dict[str, str]:
-    """{file name: text} of all C sources but data.c, the same for all parameter files of one structure."""
+    """{file name: text} of all C sources of an FMU except data.c.
+
+    They are the same for all parameter files of one structure: files with the same generated code.
+    """
     native = load_native_definition(model)
     files = _read_handwritten_files(model, native)
     files["law.h"], files["law.c"] = _generate_law_sources(model, parameter_split, native)
@@ -60,7 +66,7 @@ def generate_code(model: Model, parameters: ParameterFile, parameter_split: Para
 def _generate_law_sources(
     model: Model, parameter_split: ParameterSplit, native_definition: NativeDefinition
 ) -> tuple[str, str]:
-    """Texts of law.h and law.c, generated once for all parameter files of one structure."""
+    """Texts of law.h and law.c, generated once for all parameter files with the same structure."""
     key = (
         model.name,
         model.evaluate,
@@ -193,7 +199,7 @@ def _format_variable(
     is_boolean: bool = False,
     margin: float = 0.0,
 ) -> str:
-    """C initializer of one variable."""
+    """Format the C initializer of one variable: name, unit, description, interval."""
     flags = ", ".join(
         str(int(flag)) for flag in (interval.low_open, interval.high_open, is_integer, is_boolean)
     )

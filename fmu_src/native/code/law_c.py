@@ -110,7 +110,7 @@ def _list_sizes(
     native_definition: NativeDefinition,
     output_counts: Mapping[str, int],
 ) -> dict[str, int]:
-    """{name: integer} of array sizes in C and of offsets in the history variables.
+    """{name: integer} of array sizes in the C code, and of the offsets of the history variables.
 
     output_counts : {function: number of its outputs}
     """

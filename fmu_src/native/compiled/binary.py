@@ -11,9 +11,11 @@ from uuid import UUID
 from ..data import PLACEHOLDER_NAME, DataBlock
 
 _MACHO_MAGIC = struct.pack("<I", 0xFEEDFACF)
+"""First bytes of a Mach-O library."""
 _UUID_COMMAND, _SIGNATURE_COMMAND = 0x1B, 0x1D
 """Load commands of Mach-O (LC_UUID, LC_CODE_SIGNATURE)."""
 _CODE_DIRECTORY_MAGIC = 0xFADE0C02
+"""First number of the code directory in the signature of a Mach-O library."""
 _DIGEST_SIZE = 32
 """Size of a SHA-256 digest [bytes]."""
 

@@ -1,4 +1,6 @@
-"""Cache folder: compiled models of FMUs, and the cache of the compiler.
+"""Cache folder: compiled models of FMUs, stored results of long computations, cache of the compiler.
+
+Its files become part of FMUs, so only the user and root may have write access.
 
 Its files become part of FMUs, so only the user and root may have write access.
 """
@@ -38,7 +40,10 @@ def compiled_model_folder() -> Path:
 
 
 def kernel_result_folder() -> Path:
-    """Folder of the results that the kernel computed."""
+    """Cache folder of the stored results of long computations of the package `jointfmu`.
+
+    These are reduced contact points and friction patches of bolted joints.
+    """
     return cache_folder() / "results"
 
 
@@ -49,7 +54,9 @@ def compiler_cache_folder() -> Path:
 
 
 def check_cache_access(path: Path) -> None:
-    """Check the owner and write access of a file or folder in the cache, and of its parents in the cache.
+    """Raise ValueError if another user may have changed a file or folder of the cache.
+
+    The owner and the write access of the path and of its parents in the cache are checked.
 
     A missing path, a path outside the cache, and any path on Windows pass.
 
@@ -122,5 +129,5 @@ def clear_cache() -> None:
 
 
 def _cache_subfolders() -> tuple[Path, ...]:
-    """Folders that jointfmu fills: compiled models, results of the kernel, the compiler's default cache."""
+    """Folders that jointfmu fills: compiled models, stored results, and the compiler's default cache."""
     return compiled_model_folder(), kernel_result_folder(), cache_folder() / "zig"

@@ -38,7 +38,9 @@ MAX_CACHED_FILES = 200
 """Largest number of files in a cache folder [1]; the oldest are deleted."""
 _MODEL_FILE_SUFFIX, _RESULT_FILE_SUFFIX = ".tar.xz", ".kept.xz"
 _COMPILER_PACKAGES = ("casadi", "ziglang")
+"""Packages that compile models; each set of their versions has its own cache folder."""
 _SOURCE_SUFFIXES = (".py", ".c", ".h")
+"""Endings of the files whose content determines the generated code."""
 _MEMBER_NAME_PATTERN = re.compile(r"sources/\w[\w.-]*|\d/[\w-]+")
 """Pattern of member names in the file of a compiled model: C files, and libraries as FMI version/platform."""
 
@@ -97,7 +99,9 @@ def get_cached_result(dependency_text: str, model: Model, compute_result: Callab
 
 
 def get_kernel_result(key: str, compute_result: Callable[[], bytes]) -> bytes:
-    """Bytes that the kernel computes, read from the cache if the sources of the kernel are unchanged.
+    """Get the stored result of a long computation of the package `jointfmu`, or compute and store it.
+
+    A stored result is in the user's cache. It is used only if the sources of the package are unchanged.
 
     key : identifies the computation and its arguments
 
@@ -115,7 +119,7 @@ def get_kernel_result(key: str, compute_result: Callable[[], bytes]) -> bytes:
 
 
 def _read_cache_file(cache_path: Path) -> bytes:
-    """Content of a cached file; empty if it is missing. Raises ValueError as `check_cache_access`."""
+    """Content of a file of the cache; empty if it is missing. Raises ValueError as `check_cache_access`."""
     with suppress(OSError):
         check_cache_access(cache_path)
         return cache_path.read_bytes()
@@ -181,7 +185,7 @@ def _digest_sources(model: Model) -> str:
 
 @cache
 def _digest_folders(source_folders: tuple[Path, ...]) -> str:
-    """SHA-256 of all source files in folders."""
+    """SHA-256 digest of all source files in folders."""
     digest = sha256()
     for folder in source_folders:
         for name, content in _read_source_files(folder):

@@ -31,6 +31,7 @@ _COMMON_OPTIONS = (
     "-std=c11", "-O2", "-ffp-contract=off", "-fno-math-errno", "-fno-sanitize=undefined",
     "-fvisibility=hidden", "-DNDEBUG", "-s", "-ffunction-sections", "-fdata-sections",
 )  # fmt: skip
+"""Options of zig for all libraries: reproducible numbers and bytes."""
 _LIBRARY_OPTIONS = (*_COMMON_OPTIONS, "-shared", "-mllvm", "-inline-threshold=100")
 """Options for shared libraries. The inline threshold of 100 (default 225) saves 2 % of size."""
 _WEBASSEMBLY_OPTIONS = (
@@ -72,6 +73,7 @@ def compile_libraries(
     )
 
     def compile_library(platform: str) -> bytes:
+        """Compile the library of one platform and return its bytes."""
         with tempfile.TemporaryDirectory() as out:
             file = Path(out) / library_file_name(library_stem or fmu_name, platform)
             _run_zig(
@@ -115,7 +117,7 @@ def compile_webassembly(module_name: str, sources: Mapping[str, str], source_nam
 
 
 def library_file_name(library_name: str, platform: str) -> str:
-    """File name of a library on a platform."""
+    """File name of a shared library on a platform: with .so, .dll or .dylib."""
     return library_name + {"windows": ".dll", "linux": ".so", "darwin": ".dylib"}[platform.split("-")[1]]
 
 
@@ -132,7 +134,10 @@ def join_universal_library(libraries: Sequence[bytes]) -> bytes:
 
 
 def _compiler_options(platform: str, library_name: str) -> tuple[str, ...]:
-    """Compiler options for a platform and the file name of a library without extension."""
+    """Compiler options for a platform.
+
+    library_name : file name of the library without extension
+    """
     import ziglang
 
     # Instruction scheduling for processors with AVX2; the code still runs on every x86_64.
@@ -188,7 +193,10 @@ def _write_source_folder(files: Mapping[str, str]) -> Path:
 
 
 def _run_zig(result_name: str, folder: Path, *arguments: str) -> str:
-    """Run zig in a folder and return its output; `result_name` is the name of the result in errors."""
+    """Run the compiler zig in a folder and return its output.
+
+    result_name : name of the result in errors
+    """
     process = subprocess.run(
         [sys.executable, "-m", "ziglang", *arguments],
         cwd=folder,

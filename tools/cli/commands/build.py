@@ -48,6 +48,7 @@ def add_command(command_parsers: SubParsers) -> None:
 
 
 def _run_build(args: argparse.Namespace) -> CommandResult:
+    """Run `jointfmu build`: build the FMUs, and print what changed in replaced ones."""
     if args.name is not None and args.systems:
         raise ValueError(f"--name {args.name} is for one FMU; leave out --systems")
     file = load_parameter_file(args.params) if args.params else None
@@ -138,6 +139,7 @@ def add_cache_command(command_parsers: SubParsers) -> None:
 
 
 def _run_cache(args: argparse.Namespace) -> CommandResult:
+    """Run `jointfmu cache`: print the size of the cache, or clear it."""
     with require_package("build"):
         from jointfmu_fmu_src.native.compiled import cache
     if args.clear:

@@ -109,6 +109,7 @@ def _working_point_meanings() -> dict[str, list[str]]:
 
 
 def _run_export(args: argparse.Namespace) -> CommandResult:
+    """Run `jointfmu export`: write the file of a joint in another program's format."""
     if args.form in ROBOT_FORMATS:
         return _export_drive(args)
     if args.what not in EXPORT_CONTENTS:
@@ -143,7 +144,7 @@ def _printed_unit(name: str) -> str:
 
 
 def _exports_complete_joint(args: argparse.Namespace, parameter_file: ParameterFile) -> bool:
-    """Whether the springs are the stiffness matrix of the complete joint, not those of its interface."""
+    """Whether the exported springs are the stiffness matrix of the complete joint, not its interface's."""
     has_members = getattr(parameter_file.values, "has_elastic_members", False)
     return (
         args.what == "springs"
@@ -203,6 +204,7 @@ def _judge_export(args: argparse.Namespace, parameter_file: ParameterFile) -> Pl
 
 
 def _create_export(args: argparse.Namespace, parameter_file: ParameterFile) -> "ExportedFile":
+    """Content of the exported file, from the options."""
     import numpy as np
 
     from ...exchange.export import writing

@@ -34,7 +34,7 @@ def add_command(command_parsers: SubParsers) -> None:
 
 
 def _declare_procedure(procedure_parsers: SubParsers, procedure_by_joint: Mapping[str, Procedure]) -> None:
-    """Declare one procedure with the options of all its joints.
+    """Declare one fit procedure as a sub-command, with the options of all its joints.
 
     procedure_by_joint : {joint: its procedure of this name}
     """
@@ -67,7 +67,7 @@ def _run_fit(choices: Mapping[str, Procedure], args: argparse.Namespace) -> Comm
 
 
 def _read_options(procedure: Procedure, args: argparse.Namespace) -> dict[str, object]:
-    """Read the options of a procedure: {name: value}, numbers in SI units."""
+    """Read the options of a fit procedure: {name: value}, numbers in SI units."""
     units = {option.unit_option for option in procedure.options}
     return {
         option.name: _read_option(option, args) for option in procedure.options if option.name not in units
@@ -75,6 +75,7 @@ def _read_options(procedure: Procedure, args: argparse.Namespace) -> dict[str, o
 
 
 def _read_option(option: Option, args: argparse.Namespace) -> object:
+    """Value of one option of a procedure, a number in SI units."""
     value = getattr(args, option.name)
     if not option.default_unit or value is None:
         return value

@@ -38,6 +38,7 @@ def add_command(command_parsers: SubParsers) -> None:
 
 
 def _run_law(args: argparse.Namespace) -> CommandResult:
+    """Run `jointfmu law`: evaluate one interface law at pressures or spot areas."""
     file = load_law_file(args.params, args.law) if args.params else None
     law = build_law_parameters(args.law, file, dict(args.settings))
     with np.errstate(over="ignore"):
@@ -60,7 +61,7 @@ def _run_law(args: argparse.Namespace) -> CommandResult:
 
 
 def _finite_entry(law_column: Any, row_index: int) -> float | None:
-    """Entry of a column in one row, or the one number for all rows; None if it is not finite."""
+    """Number of a result column in one row, or its one number for all rows; None if it is not finite."""
     value = float(
         np.broadcast_to(law_column, (row_index + 1,) if np.ndim(law_column) == 0 else np.shape(law_column))[
             row_index

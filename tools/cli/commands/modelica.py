@@ -30,6 +30,7 @@ def add_command(command_parsers: SubParsers) -> None:
 
 
 def _run_modelica(args: argparse.Namespace) -> CommandResult:
+    """Run `jointfmu modelica`: write the Modelica library."""
     file = load_parameter_file(args.params) if args.params else None
     points = {kind.name: _read_working_points(kind, args) for kind in KINDS.values() if kind.working_point}
     with require_package("write the library"):
@@ -60,6 +61,7 @@ def _working_point_inputs() -> dict[str, list[JointKind]]:
 
 
 def _describe_input(joint_kind: JointKind, input_name: str) -> str:
+    """Help text of the option for an input of a joint that defines working points."""
     variable = joint_kind.variables[input_name]
     return f"{variable.doc} [{variable.unit}]"
 

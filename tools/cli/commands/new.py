@@ -42,7 +42,7 @@ def add_command(command_parsers: SubParsers) -> None:
 
 
 def _declare_joint(joint_parsers: SubParsers, joint_name: str, joint_command: NewJointCommand) -> None:
-    """Declare the sub-command of one joint."""
+    """Declare the sub-command of `jointfmu new` for one joint."""
     sub = declare_command(
         joint_parsers, joint_name, partial(_run_new, joint_command), f"make {joint_command.description}"
     )
@@ -74,6 +74,7 @@ def _run_new(joint_command: NewJointCommand, args: argparse.Namespace) -> Comman
 
 
 def _joint_to_json(joint: Joint) -> dict[str, object]:
+    """JSON object of a new joint: name, facts, parameters, warnings."""
     return {
         "joint": joint.file.joint,
         "law": joint.file.law,
@@ -87,13 +88,14 @@ def _joint_to_json(joint: Joint) -> dict[str, object]:
 def _run_table(
     iterate_rows: Callable[[], Iterator[dict[str, Any]]], args: argparse.Namespace
 ) -> CommandResult:
-    """Print a table: bolts, materials or finishes."""
+    """Print a table that `jointfmu new` offers: bolts, materials or finishes."""
     content = list(iterate_rows())
     cells = [[*content[0]], *([_format_cell(cell) for cell in row.values()] for row in content)]
     return CommandResult(json_document=content, lines=align_columns(cells))
 
 
 def _format_cell(value: object) -> str:
+    """Format a cell of a printed table: number, text or empty."""
     return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
@@ -104,19 +106,20 @@ _MATERIAL_COLUMNS = {
     "alpha [1e-6/K]": ("alpha", 1e6),
     "H [MPa]": ("H", 1e-6),
 }
+"""Columns of the printed table of materials: {heading: (column of the table, factor from SI)}."""
 _FINISH_COLUMNS = {
     "Ra [um]": ("Ra", 1e6),
     "from": ("Ra_low", 1e6),
     "to": ("Ra_high", 1e6),
     "slope": ("slope", 1.0),
 }
-"""Columns of the printed tables: {heading: (column of the table, factor from SI to the printed unit)}."""
+"""Columns of the printed table of finishes: {heading: (column of the table, factor from SI)}."""
 
 
 def _iterate_table_rows(
     table_name: str, column_scales: Mapping[str, tuple[str, float]], source: str
 ) -> Iterator[dict[str, object]]:
-    """Yield the rows of `materials` or `finishes`.
+    """Yield the rows of the printed table of materials or of finishes.
 
     column_scales : {heading: (column of the table, factor from SI to the printed unit)}
     source        : format string for the column `source`, filled with the numbers of the row
@@ -133,6 +136,7 @@ def _iterate_table_rows(
 
 
 def _iterate_bolt_table_rows() -> Iterator[dict[str, object]]:
+    """Yield the rows of the printed table of bolts."""
     from ...inputs.drawing.tables import property_class_strength, read_property_classes, read_threads
     from ...inputs.drawing.vdi2230 import assembly_preload, stress_area
 
@@ -189,12 +193,13 @@ def _run_catalogue(args: argparse.Namespace) -> CommandResult:
 
 
 def _contains_words(words: Sequence[str], entry_name: str) -> bool:
-    """Return whether a name contains the joined words. Case, signs and spaces are ignored."""
+    """Whether the name of a catalogue entry contains the joined words. Case, signs and spaces are ignored."""
     searched, plain_name = (re.sub(r"[^a-z0-9]", "", text.lower()) for text in ("".join(words), entry_name))
     return searched in plain_name
 
 
 def _format_heading(column: CatalogueColumn) -> str:
+    """Format the heading of a column of the printed catalogue: name and unit."""
     return f"{column.name}{'' if column.display_unit == '1' else f' [{column.display_unit}]'}"
 
 

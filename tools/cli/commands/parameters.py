@@ -17,6 +17,7 @@ from ...inputs.laws import build_law_parameters, load_law_file
 from ..command import CommandResult, SubParsers, declare_argument, declare_command
 
 _TABLE_HEAD = ("name", "default", "unit", "allowed", "meaning")
+"""Headings of the printed table of parameters."""
 
 
 def add_command(command_parsers: SubParsers) -> None:
@@ -34,6 +35,7 @@ def add_command(command_parsers: SubParsers) -> None:
 
 
 def _run_parameters(args: argparse.Namespace) -> CommandResult:
+    """Run `jointfmu parameters`: list the parameters of an FMU, joint or law."""
     name = args.name
     if name in LAWS:
         if args.law:
@@ -86,6 +88,7 @@ def _parameter_to_json(parameter_name: str, parameter_field: Field[Any], value: 
 
 
 def _format_row(parameter_document: dict[str, Any]) -> tuple[str, ...]:
+    """Format the row of one parameter: name, default, unit, allowed values, meaning."""
     allowed = parameter_document["allowed"]
     if isinstance(allowed, list):
         allowed = " | ".join(str(option).lower() for option in allowed)
@@ -101,6 +104,7 @@ def _format_row(parameter_document: dict[str, Any]) -> tuple[str, ...]:
 
 
 def _format_default(value: object) -> str:
+    """Format the default value of a parameter."""
     if value is None:
         return "-"
     if isinstance(value, tuple):

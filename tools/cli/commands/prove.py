@@ -1,4 +1,6 @@
-"""`jointfmu prove`: run the experiments stored in an FMU.
+"""`jointfmu prove`: run the experiments stored in an FMU, and compare with their reference results.
+
+`jointfmu validate`: compare the laws with quadrature, and results with published numbers.
 
 `jointfmu validate`: compare the laws with quadrature, and results with published numbers.
 """
@@ -36,6 +38,7 @@ def add_command(command_parsers: SubParsers) -> None:
 
 
 def _run_prove(args: argparse.Namespace) -> CommandResult:
+    """Run `jointfmu prove`: repeat the experiments of an FMU in an importer."""
     if args.listing and args.against:
         raise ValueError("--listing needs the reference results stored in the FMU; leave out --against")
     proof = prove(
@@ -57,7 +60,9 @@ def _run_prove(args: argparse.Namespace) -> CommandResult:
 
 
 def _compute_expected_contents(fmu: Path, path: Path) -> ExpectedFmuContents:
-    """Compute start values and reference results from a parameter file, without building its FMU.
+    """Compute the start values and reference results that an FMU should contain, from a parameter file.
+
+    The FMU is not built.
 
     Raises ValueError if the FMU does not have the inputs and outputs of an FMU of the file's joint.
     """
@@ -87,6 +92,7 @@ def add_validate_command(command_parsers: SubParsers) -> None:
 
 
 def _run_validate(args: argparse.Namespace) -> CommandResult:
+    """Run `jointfmu validate`: compare laws and published numbers with computed ones."""
     rows = validation.validate()
     if args.frequencies:
         with require_fem_packages("the finite-element analysis"):

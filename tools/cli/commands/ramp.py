@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 RAMP_OPTIONS, LOOP_OPTIONS = ("to", "step"), ("about", "shape", "points", "cycles", "output")
 """Options of a ramp, and options of load cycles in addition to --loop."""
 MAX_PRINTED_ROWS = 24
-"""Largest number of points of a ramp that are printed on a terminal."""
+"""Largest number of points of a ramp that are printed on a terminal [1]."""
 
 
 def add_command(command_parsers: SubParsers) -> None:
@@ -88,6 +88,7 @@ def _print_messages(messages: Iterable[str], driven_input: str) -> None:
 
 
 def _run_ramp(args: argparse.Namespace) -> CommandResult:
+    """Run an FMU along a load ramp, and print or write its outputs."""
     result = ramp.run_ramp(args.fmu, args.input, args.to, args.step, dict(args.settings))
     _print_messages(result.messages, args.input)
     result = _select_columns(result, args.input, args.columns)
@@ -154,6 +155,7 @@ def _draw_ramp(figure: "Figure", ramp_result: ramp.RampResult) -> None:
 
 
 def _run_loops(args: argparse.Namespace) -> CommandResult:
+    """Run an FMU in load cycles, and print or write loss and stiffness."""
     stated = {name: getattr(args, name) for name in LOOP_OPTIONS[:4] if getattr(args, name) is not None}
     if "about" in stated:
         stated["centre"] = stated.pop("about")

@@ -22,6 +22,7 @@ def add_command(command_parsers: SubParsers) -> None:
 
 
 def _run_report(args: argparse.Namespace) -> CommandResult:
+    """Run `jointfmu report`: write the page of one joint."""
     joint = load(args.file)
     out: Path = args.out or Path(f"{args.file.stem}.html")
     if out.suffix != ".html":

@@ -43,6 +43,7 @@ def add_command(command_parsers: SubParsers) -> None:
 
 
 def _run_ring(args: argparse.Namespace) -> CommandResult:
+    """Run `jointfmu ring`: resonance of a joint with a body, by simulation with FMUs."""
     with require_package("run a system"):
         from ...systems import ringing
     example = ringing.find_vibrating_joint(load_system(args.system), args.joint)
@@ -127,7 +128,7 @@ def _collect_decay_columns(decay: Any) -> tuple[np.ndarray[Any, Any], ...]:
 
 
 def _check_arguments(args: argparse.Namespace, inertia_unit: str) -> None:
-    """Raise ValueError before the work starts if load, inertia or amplitude is out of range.
+    """Raise ValueError before the work starts if load, inertia or amplitude of the vibration is out of range.
 
     inertia_unit : unit of the inertia in the message
     """
@@ -141,7 +142,7 @@ def _check_arguments(args: argparse.Namespace, inertia_unit: str) -> None:
 
 
 def _resonance_row(vibration: Any) -> dict[str, float]:
-    """Results at one load: frequencies [Hz], damping ratios [1], and the largest stable time steps [s].
+    """Row of results at one load: frequencies [Hz], damping ratios [1], and largest stable time steps [s].
 
     `largest_step` holds if the co-simulation master passes the force on at once, `largest_step_late` if it
     passes the force on one step late.
@@ -161,7 +162,7 @@ def _resonance_row(vibration: Any) -> dict[str, float]:
 
 
 def _format_rows(rows: list[dict[str, float]], load_unit: str) -> str:
-    """Format the rows as CSV text with six digits; headings with units."""
+    """Format rows of results as CSV text with six digits; headings with units."""
     units = (load_unit, "Hz", "Hz", "1", "1", "s", "s")
     values = [np.array([row[name] for row in rows]) for name in rows[0]]
     return columns.format_table(list(zip(rows[0], units, strict=True)), values, digits=6)

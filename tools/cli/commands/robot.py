@@ -23,7 +23,7 @@ from ..command import CommandResult, SubParsers, declare_argument, declare_comma
 from ..outputs import check_input_overwrite, declare_output
 
 MAX_PAYLOAD = 1e4
-"""Largest allowed payload [kg]."""
+"""Largest payload that the option `--payload` may have [kg]."""
 
 
 def add_command(command_parsers: SubParsers) -> None:
@@ -220,6 +220,7 @@ def _write_robot_with_plugins(
 
 
 def _format_results(result_values: dict[str, Any], model: Any) -> Sequence[str]:
+    """Format the results of a robot with elastic drives as lines of text."""
     from ...exchange.robots.elastic import coordinate_unit
     from ...exchange.robots.rigid_joints import format_figures
 

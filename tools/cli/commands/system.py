@@ -37,6 +37,7 @@ def add_command(command_parsers: SubParsers) -> None:
 
 
 def _run_system(args: argparse.Namespace) -> CommandResult:
+    """Run `jointfmu system`: write FMUs, archives and Modelica model of a system."""
     described = load_system(args.file)
     with require_package("build a system"):
         from ...exchange.modelica import library
@@ -89,7 +90,7 @@ def _run_system(args: argparse.Namespace) -> CommandResult:
 
 
 def _warn_long_step(system: System, largest_step: float, joint_name: str) -> str:
-    """Format a warning if the system's interval is longer than the largest stable step; else empty.
+    """Warning if the communication interval of a system is longer than the largest stable step; else empty.
 
     largest_step : largest stable step [s] of a co-simulation
     joint_name   : joint that limits the step

@@ -44,6 +44,7 @@ DEFAULT_JOINT_SAMPLE_COUNT, DEFAULT_FMU_SAMPLE_COUNT, DEFAULT_RAMP_POINT_COUNT =
 SWEEP_DEPRECATION_NOTE = (
     "jointfmu sweep: deprecated, and removed in the next major version; use jointfmu uncertainty FMU"
 )
+"""Warning that the command `sweep` prints."""
 
 
 def add_command(command_parsers: SubParsers) -> None:
@@ -116,7 +117,7 @@ def _check_options(args: argparse.Namespace, is_fmu: bool) -> None:
 
 
 def _sample_count(args: argparse.Namespace, default: int) -> int:
-    """Number of samples, a power of two. Raises ValueError for a wrong number or seed."""
+    """Number of samples of a study, a power of two. Raises ValueError for a wrong number or seed."""
     from ...studies.uncertainty import study
 
     study.check_seed(args.seed)
@@ -124,6 +125,7 @@ def _sample_count(args: argparse.Namespace, default: int) -> int:
 
 
 def _make_execution(args: argparse.Namespace) -> "Execution":
+    """Where the runs of a study are done, from the options: processes here, or a dask cluster."""
     from ...studies.uncertainty.runs import Execution
 
     if args.workers is not None and args.workers < 1:
@@ -135,7 +137,7 @@ def _make_execution(args: argparse.Namespace) -> "Execution":
 def _open_study_folder(
     uncertainty_problem: "UncertaintyProblem", sample_count: int, seed: int, out: Path | None
 ) -> Iterator[None]:
-    """Context manager: claim the folder that keeps the runs of a study; without a folder do nothing."""
+    """Context that claims the folder in which the runs of a study are stored; without a folder do nothing."""
     from ...studies.uncertainty import journal
 
     if out is None:
@@ -150,6 +152,7 @@ def _open_study_folder(
 
 
 def _state_study_of_fmu(args: argparse.Namespace, fmu: Path) -> "UncertaintyProblem":
+    """Statement of the study of an FMU, from the options: distributions, outputs, loads."""
     from ...studies.uncertainty import study
     from ...studies.uncertainty.sweep import state_fmu_problem
     from ...studies.uncertainty.worker import LoadRamp
@@ -159,6 +162,7 @@ def _state_study_of_fmu(args: argparse.Namespace, fmu: Path) -> "UncertaintyProb
 
 
 def _run_uncertainty(args: argparse.Namespace) -> CommandResult:
+    """Run `jointfmu uncertainty`: propagate uncertain parameters through a joint or an FMU."""
     from ...studies.uncertainty import journal, problem, propagate, report, study
     from ...studies.uncertainty.sweep import format_runs_csv
     from ...studies.uncertainty.worker import JointRamp
@@ -205,7 +209,7 @@ def _run_uncertainty(args: argparse.Namespace) -> CommandResult:
 
 
 def _count_runs(samples: "SampledOutputs", out: Path) -> tuple[dict[str, object], str]:
-    """Numbers of the runs in a folder: as JSON object, and as a line."""
+    """Numbers of runs in the folder of a study: as JSON object, and as a line of text."""
     count, failed = samples.accepted.size, len(samples.errors)
     new = samples.new_run_count
     line = f"{count} runs in {out}: {new} now, {count - new} before, {failed} failed"
@@ -226,7 +230,10 @@ def add_sweep_command(command_parsers: SubParsers) -> None:
 
 
 def _run_sweep(args: argparse.Namespace) -> CommandResult:
-    """Do the runs of an FMU as `_run_uncertainty` does; print only how many runs are done and failed."""
+    """Do the runs of an FMU for the deprecated command `sweep`; print how many are done and failed.
+
+    They are the runs of `_run_uncertainty`.
+    """
     from ...studies.uncertainty import journal, study
     from ...studies.uncertainty.runs import evaluate_runs
     from ...studies.uncertainty.sweep import format_runs_csv

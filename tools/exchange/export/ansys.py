@@ -18,6 +18,7 @@ from .placing import Placement, Springs, format_comment_header
 
 MATRIX27_TYPE_NUMBER, STIFFNESS_MATRIX_OPTION, DAMPING_MATRIX_OPTION = 27, 4, 5
 _UPPER_TRIANGLE_INDICES = np.triu_indices(12)
+"""Row and column indices of the real constants C1 to C78 in the matrix."""
 
 
 def format_springs(springs: Springs, placement: Placement, comment_lines: Sequence[str]) -> str:
@@ -105,7 +106,7 @@ def _number_real_constant_set(
 
 
 def _format_real_constants(constants_by_number: Mapping[int, Array]) -> Iterable[str]:
-    """Format sets of real constants: {number: C1 to C78 (78)}."""
+    """Format sets of real constants of ANSYS: {number: C1 to C78 (78)}."""
     sizes = (len(constants_by_number), max(constants_by_number), _UPPER_TRIANGLE_INDICES[0].size, 7)
     yield ",".join(["RLBLOCK", *(f"{size:8d}" for size in sizes)])
     yield from ("(2i8,6g16.9)", "(7g16.9)")
@@ -116,13 +117,14 @@ def _format_real_constants(constants_by_number: Mapping[int, Array]) -> Iterable
 
 
 def _format_element_type(type_number: int, matrix_option: int) -> Iterable[str]:
+    """Format the definition of a MATRIX27 element type: stiffness or damping."""
     yield f"ET,{type_number:9d},{MATRIX27_TYPE_NUMBER:4d}"
     yield f"KEYOP,{type_number:9d},{2:3d},{0:9d}"
     yield f"KEYOP,{type_number:9d},{3:3d},{matrix_option:9d}"
 
 
 def _format_nodes(node_labels: NDArray[np.int64], coordinates: Array) -> Iterable[str]:
-    """Format nodes with labels (n, 2) on side 1 and side 2.
+    """Format nodes with labels (n, 2) on side 1 and side 2, with their coordinates.
 
     coordinates : (n, 3) of pairs of coincident nodes, or (2, 3) of the two nodes of one pair
     """
@@ -142,6 +144,7 @@ def _format_nodes(node_labels: NDArray[np.int64], coordinates: Array) -> Iterabl
 
 
 def _format_integers(integers: Iterable[int]) -> str:
+    """Format node and element numbers in fixed columns."""
     return "".join(f"{v:10d}" for v in integers)
 
 

@@ -10,13 +10,13 @@ from .joint_stiffness import JointStiffness
 from .placing import Placement, format_comment_header
 
 GROUP_NAME = "JOINT"
-"""Group of the segment (SEG2) in the user's mesh."""
+"""Name of the group in the user's mesh with the segment (SEG2) of the joint."""
 
 
 def format_joint_stiffness(
     stiffness: JointStiffness, placement: Placement, comment_lines: Sequence[str]
 ) -> str:
-    """Format a joint as Python variables for AFFE_CARA_ELEM.
+    """Format the stiffness matrix of a complete joint as Python variables for Code_Aster's AFFE_CARA_ELEM.
 
     comment_lines : lines for the head of the file
     """

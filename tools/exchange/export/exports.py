@@ -35,11 +35,11 @@ CONTENTS_BY_FORMAT = {
 STIFFNESS_FORMATS = ("ansys", "calculix", "abaqus", "nastran", "aster")
 """Formats whose springs are the stiffness matrix of the complete joint, if its sides are elastic."""
 INTERFACE_FORMATS = ("ansys", "calculix", "abaqus", "csv")
-"""Formats whose springs can be those of the interface alone, between node pairs."""
+"""Formats that can have springs of the interface alone, between node pairs."""
 ROBOT_FORMATS = ("mjcf", "urdf")
 """Formats of robot simulators; a file has a drive."""
 EXPORT_CONTENTS = ("springs", "contact", "curve")
-"""Contents that can be exported."""
+"""Contents of a joint that can be exported: springs, contact law, load curve."""
 DEFAULT_MAX_LOAD_ERROR = 1e-3
 """Default for the largest relative error of the load [1] when a table is interpolated linearly."""
 
@@ -62,7 +62,7 @@ class LoadCurveExport:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Exports:
-    """Exports that a joint offers. None: the joint does not offer this content.
+    """Exports that a kind of joint offers; None: the joint does not offer this content.
 
     working_point_class : dataclass of declared quantities. The user must state the first quantity; the others
                           have defaults

@@ -17,7 +17,7 @@ MAX_ROUND_OFF = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class JointStiffness:
-    """Stiffness of side 2 relative to side 1, about the centroid of the contact.
+    """Stiffness matrix of a complete joint: side 2 relative to side 1, about the centroid of the contact.
 
     matrix         : symmetric K (6, 6) [N/m, N, N.m/rad] in the frame of the joint: force and moment that
                      move side 2 at the centroid, over its relative displacement and rotation
@@ -30,7 +30,7 @@ class JointStiffness:
 
     @classmethod
     def from_tangent(cls, tangent_stiffness: Array, node_positions: Array) -> "JointStiffness":
-        """Symmetric part of a tangent stiffness (6, 6), without round-off."""
+        """Stiffness matrix that is the symmetric part of a tangent stiffness (6, 6), without round-off."""
         K = 0.5 * (tangent_stiffness + tangent_stiffness.T)
         size = np.sqrt(np.abs(np.diag(K)))
         return cls(np.where(np.abs(K) > MAX_ROUND_OFF * np.outer(size, size), K, 0.0), node_positions)
@@ -42,7 +42,7 @@ class JointStiffness:
         return float(np.max(np.abs(self.matrix / np.outer(size, size) - np.eye(6))))
 
     def model_matrix(self, placement: Placement) -> Array:
-        """K (6, 6) about the centroid, along the model's axes and in its units."""
+        """Stiffness K (6, 6) about the centroid, along the model's axes and in its units."""
         axes = list(AXIS_ORDER[placement.normal_axis])
         order = [*axes, *(axis + 3 for axis in axes)]
         length = placement.units.convert(1.0, "m")
@@ -52,7 +52,7 @@ class JointStiffness:
         return K
 
     def node_matrix(self, placement: Placement) -> Array:
-        """K (12, 12) of the nodes of side 1 and side 2, along the model's axes and in its units.
+        """Stiffness K (12, 12) between the nodes of side 1 and side 2, in the model's axes and units.
 
         The motion of the centroid is u + theta x (-r) for a node at r with displacement u and rotation theta
         (rigid arm). So K_nodes = B^T K B with B = [-T(r1), T(r2)].
@@ -66,7 +66,7 @@ class JointStiffness:
         return placement.units.convert(self.node_positions, "m")
 
     def totals(self) -> dict[str, float]:
-        """{name: diagonal of K [N/m, N.m/rad] in the frame of the joint, about the centroid}."""
+        """{name: diagonal entry of K [N/m, N.m/rad] in the frame of the joint, about the centroid}."""
         return {
             f"K_{name if len(name) > 1 else 2 * name}": float(value)
             for name, value in zip(DOF_NAMES, np.diag(self.matrix), strict=True)
@@ -74,7 +74,7 @@ class JointStiffness:
 
 
 def rigid_arm(node_position: Array) -> Array:
-    """Matrix T (6, 6): motion of the origin by that of a node at r on the same rigid body."""
+    """Matrix T (6, 6) of a rigid arm: motion of the origin by that of a node at r on the same rigid body."""
     x, y, z = node_position
     T = np.eye(6)
     T[:3, 3:] = [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]]
@@ -82,7 +82,7 @@ def rigid_arm(node_position: Array) -> Array:
 
 
 def describe(stiffness: JointStiffness, placement: Placement) -> Sequence[str]:
-    """Comment lines: meaning, frame and point of the stiffness, positions of the nodes."""
+    """Comment lines of an exported stiffness matrix: meaning, frame and point, positions of the nodes."""
     axes = ["xyz"[axis] for axis in AXIS_ORDER[placement.normal_axis]]
     diagonal = ", ".join(f"{name} {value:.9g}" for name, value in stiffness.totals().items())
     nodes = [

@@ -15,7 +15,7 @@ from .tables import LoadTable
 MAX_CALCULIX_ROWS = 200
 """Largest number of rows of a table in CalculiX (its arrays `xiso(200)`)."""
 USER_ELEMENT_TYPE = "U901"
-"""Abaqus: type of the linear user element of a complete joint."""
+"""Type name of the linear user element of a complete joint in Abaqus."""
 EXTRAPOLATED_OVERCLOSURE = 1.0
 """Overclosure [m] by which the table is extended linearly, so that no solver evaluates beyond its end."""
 
@@ -64,6 +64,7 @@ def format_springs(
 
 
 def _format_nodes(springs: Springs, placement: Placement) -> Iterable[str]:
+    """Format the nodes of all pairs as keywords."""
     coordinates = placement.model_coordinates(springs.position)
     for side in (0, 1):
         yield f"*NODE, NSET=JOINT_SIDE_{side + 1}"
@@ -144,6 +145,7 @@ def format_coupled_springs(
 
 
 def _format_joint_nodes(stiffness: JointStiffness, placement: Placement) -> Iterable[str]:
+    """Format the two nodes of a complete joint as keywords."""
     for side, xyz in enumerate(stiffness.model_positions(placement)):
         yield f"*NODE, NSET=JOINT_SIDE_{side + 1}"
         yield f"{placement.first_free_number + side}, " + ", ".join(f"{v:.12E}" for v in xyz)

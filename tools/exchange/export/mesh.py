@@ -25,6 +25,7 @@ COLUMN_UNITS: Mapping[str, UnitSizes] = {
     "area": unit_sizes("m2", "mm2"),
     "pressure": unit_sizes("Pa", "MPa"),
 }
+"""Columns of the file of node pairs: {name: {allowed unit: its size in SI}}."""
 MAX_NODE_LABEL = 99_999_999
 """Largest label of a node: eight digits fit into the fixed columns of all solvers."""
 
@@ -71,6 +72,7 @@ def read_node_pairs(path: str | Path) -> NodePairs:
 
 
 def _read_node_labels(table: Columns, column_name: str) -> NDArray[np.int64]:
+    """Read a column of node labels. Raises ValueError for a label that is no positive whole number."""
     value = table.require_column(column_name, COLUMN_UNITS)
     bad = (value != np.round(value)) | (value < 1.0) | (value > MAX_NODE_LABEL)
     if np.any(bad):
@@ -89,6 +91,7 @@ def _check_values(
     invalid_rows: NDArray[np.bool_],
     refusal_reason: str,
 ) -> None:
+    """Raise ValueError with the node, if values of a column are invalid."""
     if np.any(invalid_rows):
         raise ValueError(
             f"{table.path}: {column_name} = {column_values[invalid_rows][0]:g} (SI) at node "

@@ -16,7 +16,7 @@ from .joint_stiffness import JointStiffness
 from .placing import Placement, format_comment_header
 
 DMIG_NAME = "KJOINT"
-"""Name of the matrix."""
+"""Name of the stiffness matrix of a joint in the NASTRAN file."""
 
 
 def format_joint_stiffness(
@@ -44,7 +44,10 @@ def format_joint_stiffness(
 
 
 def _spring_position(node_positions: Array) -> float | None:
-    """Share S [1] of the distance between the nodes at which the centroid lies; None if it lies elsewhere."""
+    """Share S [1] of the distance from node 1 to node 2 at which the centroid of the contact lies.
+
+    None if the centroid is not on the line between the nodes.
+    """
     start, line = node_positions[0], node_positions[1] - node_positions[0]
     length = float(line @ line)
     if not length:
@@ -55,11 +58,12 @@ def _spring_position(node_positions: Array) -> float | None:
 
 
 def _format_grid(label: int, position: Array) -> Iterable[str]:
+    """Format a GRID card of NASTRAN: a node with label and position."""
     yield from _large_card("GRID", label, "", *position)
 
 
 def _format_matrix(matrix: Array, first_label: int) -> Iterable[str]:
-    """Columns of the lower triangle; symmetric (IFO = 6), double precision (TIN = 2)."""
+    """Format a symmetric matrix as DMIG columns of its lower triangle (IFO = 6, double precision TIN = 2)."""
     yield f"DMIG    {DMIG_NAME:<8}{0:<8}{6:<8}{2:<8}{0:<8}"
     for j in range(12):
         rows = [i for i in range(j, 12) if matrix[i, j]]
@@ -71,7 +75,7 @@ def _format_matrix(matrix: Array, first_label: int) -> Iterable[str]:
 
 
 def _large_card(name: str, *fields: object) -> Iterable[str]:
-    """Format a card with fields of 16 characters, four in a line."""
+    """Format a card of NASTRAN with fields of 16 characters, four in a line."""
     cells = [f"{x:.9E}" if isinstance(x, float) else f"{x}" for x in fields]
     for i in range(0, len(cells), 4):
         mark = f"{name}*" if i == 0 else "*"

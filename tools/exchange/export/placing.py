@@ -26,15 +26,16 @@ class UnitSet:
     symbols: Mapping[str, str]
 
     def convert(self, value: ValueType, unit: str) -> ValueType:
-        """Convert a value from an SI unit to the unit of this set."""
+        """Convert a value from an SI unit to the consistent unit of this set."""
         return value * conversion_factor(unit, self.symbol(unit))
 
     def symbol(self, unit: str) -> str:
-        """Symbol in this set for an SI unit."""
+        """Symbol of the consistent unit of this set, for an SI unit."""
         return replace_symbols(unit, self.symbols)
 
 
 SI_UNIT_SET = UnitSet("m-N-Pa-kg", {})
+"""Unit set of a finite-element model in SI units."""
 UNIT_SETS = {
     units.name: units for units in (SI_UNIT_SET, UnitSet("mm-N-MPa-t", {"m": "mm", "Pa": "MPa", "kg": "t"}))
 }
@@ -104,7 +105,7 @@ class Placement:
 
 
 def format_comment_header(lines: Sequence[str], comment_mark: str) -> list[str]:
-    """Format the comment at the head of a file in ASCII; each line starts with the comment mark."""
+    """Format the comment at the head of an exported file in ASCII; each line starts with the comment mark."""
     plain = (" ".join(line.split()).encode("ascii", "replace").decode() for line in lines)
     return [
         f"{comment_mark} written by jointfmu {__version__}",

@@ -18,7 +18,7 @@ from .placing import Placement, Springs, UnitSet, format_comment_header
 MAX_STIFFNESS_ERROR = 0.01
 """Relative error of the stiffness [1] above which a warning is printed."""
 MAX_TABLE_ERROR = 0.5
-"""Upper limit of the relative error [1] of a table."""
+"""Largest relative error of the load [1] that the user may allow for a table."""
 _SAMPLES_PER_SEGMENT = 64
 """Sample points per segment of a curve, at which errors are measured."""
 _MIN_CURVE_SAMPLES = 10_000
@@ -26,7 +26,9 @@ _MIN_CURVE_SAMPLES = 10_000
 _MIN_STIFFNESS_CURVE_SAMPLES = 4 * _MIN_CURVE_SAMPLES
 """Smallest number of sample points if the stiffness error is limited too: some curves have short corners."""
 _MIN_SAMPLES_PER_TABLE_LINE = 12
-"""Smallest number of sample points on a line: the peak of a parabolic error is then found within 1 %."""
+"""Smallest number of sample points on a straight line of a table [1].
+
+The peak of a parabolic error is then found within 1 %."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,6 +80,7 @@ def fit_row_limit(
     found: dict[int, LoadTable] = {}
 
     def fits(i: int) -> bool:
+        """Whether the table with error number i has at most `max_rows` rows."""
         found[i] = tabulate(errors[i])
         return len(found[i].rows) <= max_rows
 
@@ -142,6 +145,7 @@ def decimate_curve(
     size = np.where(size > 0.0, size, np.inf)
 
     def error_ratio(first_point: int, last_point: int) -> float:
+        """Largest error on a straight line between two points of the curve, over the allowed error [1]."""
         slope = (load[last_point] - load[first_point]) / (
             displacement[last_point] - displacement[first_point]
         )
@@ -181,6 +185,7 @@ def _interpolation_errors(
     cubic = PchipInterpolator(rows[:, 0], rows[:, 1])
 
     def largest_error(interpolated_values: Array, exact_values: Array, min_reference_value: float) -> float:
+        """Largest error of interpolated values, relative to the values or to a smallest reference [1]."""
         size = np.maximum(np.abs(exact_values), min_reference_value)
         positive = size > 0.0
         return float(np.max(np.abs(interpolated_values - exact_values)[positive] / size[positive]))
@@ -211,6 +216,7 @@ ColumnHeads = Sequence[tuple[str, str]]
 SIGNIFICANT_DIGITS = 12
 """Significant digits of numbers in tables."""
 LABEL_COLUMN_HEADS: ColumnHeads = (("node_1", "1"), ("node_2", "1"))
+"""Headings of the columns with the node labels of a pair."""
 SPRING_COLUMN_HEADS: ColumnHeads = (
     ("x", "m"),
     ("y", "m"),
@@ -223,6 +229,7 @@ SPRING_COLUMN_HEADS: ColumnHeads = (
     ("C_y", "N.s/m"),
     ("C_z", "N.s/m"),
 )
+"""Headings of the columns of a pair: position, area, pressure, stiffness, damping."""
 
 
 def format_springs_csv(springs: Springs, placement: Placement, comment_lines: Sequence[str]) -> str:

@@ -35,6 +35,7 @@ _SPRING_WRITERS: dict[str, tuple[Callable[[Springs, Placement, list[str]], str],
 }
 """{format: (function that formats springs, comment lines)}."""
 _EXTRAPOLATION_NOTE = f"the last row extrapolates the last tangent by {keywords.EXTRAPOLATED_OVERCLOSURE:g} m"
+"""Comment line of a table that ends with an extrapolated row."""
 _CONTACT_WRITERS: dict[str, tuple[Callable[[tables.LoadTable, UnitSet, list[str]], str], tuple[str, ...]]] = {
     "calculix": (
         partial(keywords.format_contact, max_rows=keywords.MAX_CALCULIX_ROWS),
@@ -221,6 +222,7 @@ def _stiffness_warnings(load_table: tables.LoadTable) -> tuple[str, ...]:
 
 
 def _table_facts(load_table: tables.LoadTable) -> dict[str, object]:
+    """Facts about an exported table: number of rows, errors of load and stiffness."""
     return {
         "rows": len(load_table.rows),
         "error": load_table.linear_errors[0],

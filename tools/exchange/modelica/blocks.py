@@ -1,4 +1,7 @@
-"""Template variables of the packages Interfaces and Wrappers: variables and flanges of an FMU, diagram."""
+"""Template variables of the packages Interfaces and Wrappers of the Modelica library.
+
+They are the variables and flanges of an FMU, and the diagram of its wrapper.
+"""
 
 from collections.abc import Mapping, Sequence
 
@@ -28,7 +31,9 @@ _FORCE_INPUT_NOTE = (
     'Between inertias take a component of <a href=\\"modelica://JointStiffness.Components\\">Components</a>'
     "{between_inertias}."
 )
+"""Documentation of a wrapper whose FMU has forces as inputs."""
 _MOTION_INPUT_NOTE = "It takes motion and gives force, so it belongs between inertias."
+"""Documentation of a wrapper whose FMU has motions as inputs."""
 
 
 def interface_template_variables(model: Model) -> dict[str, object]:
@@ -81,7 +86,7 @@ def wrapper_template_variables(model: Model) -> dict[str, object]:
 
 
 def _has_motion_inputs(model: Model) -> bool:
-    """Return whether the inputs of an FMU are motions and its outputs forces."""
+    """Whether the inputs of an FMU are motions and its outputs forces."""
     return all(flow != "inflow" for t in find_terminals(model) for _, flow in t.members.values())
 
 

@@ -36,6 +36,7 @@ from .records import (
 from .systems import model_name, render_system_model
 
 LIBRARY_NAME = "JointStiffness"
+"""Name of the Modelica library."""
 _NON_JOINT_COMPONENTS = ("LinkWeight", "Load", "AngleProfile", "TorqueCurve")
 """Components of systems that are no joints: loads, profiles, weight."""
 _MODELICA_FUNCTION_NAMES = (
@@ -51,6 +52,7 @@ _MODELICA_FUNCTION_NAMES = (
     "loadDerivative",
     "stiffnessDerivative",
 )
+"""Names of the Modelica functions of the library, shared by its components."""
 WorkingPoints = Mapping[str, Sequence[WorkingPoint]]
 """Working points of the records: {joint: working points}."""
 
@@ -137,7 +139,7 @@ def _collect_joint(
     file: ParameterFile | None,
     working_points: Sequence[WorkingPoint] | None,
 ) -> _LibraryJoint:
-    """Collect parameters, component, records and templates of a joint."""
+    """Collect what the library contains of a joint: parameters, component, records and templates."""
     component: ModelicaComponent = modelica_module.MODELICA_COMPONENT
     is_given = file is not None and file.joint == joint_kind.name
     joint_file = file if file and is_given else load_default(joint_kind.name)
@@ -161,7 +163,10 @@ def _collect_joint(
 def _default_records(
     joint: str, module: ModuleType, working_points: tuple[WorkingPoint, ...]
 ) -> tuple[ModelicaRecord, ...]:
-    """Records of a joint's default parameters; a library written for another joint contains them, too."""
+    """Records of a joint with its default parameters.
+
+    A library that is written for a user's joint contains them, too.
+    """
     component: ModelicaComponent = module.MODELICA_COMPONENT
     return tuple(component.make_records(load_default(joint), working_points))
 
@@ -173,7 +178,7 @@ def _read_start_working_point(file: ParameterFile) -> list[WorkingPoint]:
 
 
 def _render_package_order(member_names: Mapping[str, object]) -> str:
-    """Render the file package.order."""
+    """Render the file package.order, which lists the members of a package."""
     return "\n".join(member_names) + "\n"
 
 
@@ -185,6 +190,7 @@ def _render_joint_independent_classes(
 
 
 def _render_components(joints: Sequence[_LibraryJoint]) -> dict[str, str]:
+    """Render the Modelica components of all joints: {class: text}."""
     classes = {}
     for joint in joints:
         name, model = joint.component.name, MODELS[joint.component.name]

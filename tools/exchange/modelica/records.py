@@ -49,7 +49,7 @@ def escape_html(text: str) -> str:
 
 
 def make_identifier(name: str) -> str:
-    """Make a Modelica identifier from a title."""
+    """Make a Modelica identifier from the title of a record."""
     words = re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_")
     plain = words[:1].isalpha() and not is_reserved(words) and words.lower() != "package"
     return words[0].upper() + words[1:] if plain else f"Joint_{words}"
@@ -74,6 +74,7 @@ def template_environment(*folders: Path) -> Environment:
 TABLE_TOLERANCE = 1e-7
 """Largest relative error [1] of load and stiffness of a table, against the original curve."""
 _ERROR_SAMPLE_FRACTIONS = np.linspace(0.0, 1.0, 9)[1:-1]
+"""Relative positions in a segment of a table [1] at which its error is measured."""
 
 
 class InterpolationTable(NamedTuple):
@@ -115,6 +116,7 @@ def decimate_curve(
     )
 
     def is_reproduced_by_quintic(start_node: int, end_node: int) -> bool:
+        """Whether one quintic between two nodes reproduces the curve within TABLE_TOLERANCE."""
         accurate = _segment_error(curve, start_node, end_node, floor) <= TABLE_TOLERANCE
         return accurate and (segment_fits is None or segment_fits(start_node, end_node))
 
@@ -127,7 +129,7 @@ def decimate_curve(
 
 
 def _segment_error(curve: Curve, start_node: int, end_node: int, min_reference: tuple[float, float]) -> float:
-    """Largest relative error of load and stiffness if one quintic leads from node i to node j.
+    """Largest relative error of load and stiffness if one quintic replaces a curve between two nodes.
 
     min_reference : smallest load and stiffness to which the errors are relative
     """
@@ -179,7 +181,7 @@ class ModelicaRecord:
         return float(self.table.rows[-1, 1])
 
     def template_variables(self, base_record: str) -> dict[str, object]:
-        """Template variables of the record.
+        """Variables of the template that renders a record of the library.
 
         base_record : name of the record that it extends
         """
@@ -231,10 +233,10 @@ class ModelicaComponent:
 
 
 def format_parameter_values(values: Mapping[str, float]) -> dict[str, str]:
-    """Format values of a parameter file as Modelica expressions."""
+    """Format values of a parameter file as Modelica expressions: {name: expression}."""
     return {name: format_number(value, PARAMETER_DIGITS) for name, value in values.items()}
 
 
 def format_computed_values(values: Mapping[str, float]) -> dict[str, str]:
-    """Format computed values as Modelica expressions."""
+    """Format computed values as Modelica expressions with rounded numbers: {name: expression}."""
     return {name: format_number(value, COMPUTED_DIGITS) for name, value in values.items()}

@@ -17,7 +17,9 @@ from ...systems.wiring import ConnectionEnd, find_connections
 from .records import ModelicaComponent, ModelicaRecord, escape_html, escape_string, format_number
 
 _MECHANICS_PACKAGE = "Modelica.Mechanics"
+"""Package of the Modelica Standard Library with bodies and sources."""
 _COMPONENT_PACKAGE = "JointStiffness.Components"
+"""Package of the library JointStiffness with the components of joints."""
 _NOMINAL_STATE_VALUES = {"phi": "1e-3", "w": "0.1", "s": "1e-6", "v": "1e-3"}
 """{state: nominal value [SI]} of bodies."""
 _WEIGHT_PARAMETERS = ("m", "l")
@@ -30,7 +32,7 @@ RecordLookup = Callable[[str, ParameterFile, tuple[float, ...]], ModelicaRecord 
 
 
 class ComponentDeclaration(NamedTuple):
-    """Declaration of a component: type, name, modifications, position (x, y) on the diagram."""
+    """Declaration of a Modelica component: type, name, modifications, position (x, y) on the diagram."""
 
     type: str
     name: str
@@ -168,23 +170,28 @@ def _joint_modifications(
 
 
 def _format_numbers(values: Mapping[str, Any], names: Iterable[str] | None = None) -> list[str]:
+    """Format parameters of a component as modifications NAME = NUMBER."""
     return [f"{key}={format_number(value)}" for key, value in values.items() if names is None or key in names]
 
 
 def _format_state_modifications(*names: str) -> list[str]:
+    """Format modifications of states: start values and nominal values."""
     return [f"{name}(fixed=true, start=0, nominal={_NOMINAL_STATE_VALUES[name]})" for name in names]
 
 
 DeclareFunction = Callable[..., None]
+"""Function that declares a component of the Modelica model."""
 ConnectFunction = Callable[[str, str], None]
+"""Function that connects two flanges of the Modelica model."""
 
 
 def _has_weight(inertia: Part) -> bool:
-    """Whether a rotational inertia has a weight beside its axis."""
+    """Whether a rotational inertia of a system has weight at a distance from its axis."""
     return all(inertia.values.get(name, 0.0) for name in _WEIGHT_PARAMETERS)
 
 
 def _declare_inertia(system_component: Part, declare: DeclareFunction, connect: ConnectFunction) -> None:
+    """Declare the Modelica components of an inertia or mass: body, and weight if it has any."""
     declare(
         f"{_MECHANICS_PACKAGE}.Rotational.Components.Inertia",
         system_component.name,
@@ -205,6 +212,7 @@ def _create_source_declarer(
     """Return the function that declares a load: a signal block and a source of force or torque."""
 
     def declare_source(system_component: Part, declare: DeclareFunction, connect: ConnectFunction) -> None:
+        """Declare a signal block, and a source of force or torque that is connected to it."""
         values = system_component.values
         points = [
             format_number(values[f"p{k}"]) for k in range(1, CONTROL_POINT_COUNT + 1) if f"p{k}" in values
@@ -236,6 +244,7 @@ _PARTNER_DECLARERS: dict[str, Callable[[Part, DeclareFunction, ConnectFunction],
         f"{_COMPONENT_PACKAGE}.AngleProfile", part.name, _format_numbers(part.values)
     ),
 }
+"""{partner FMU (body or load) of a system: function that declares its Modelica components}."""
 
 
 def _diagram_positions(

@@ -44,7 +44,10 @@ def plugin(fmu: str | Path, out: str | Path) -> Path:
 
 
 def _read_sources(fmu: Path) -> tuple[str, dict[str, str]]:
-    """Name of an FMU and {file name: text} of its C sources; ValueError if it is not suitable."""
+    """Name of an FMU and {file name: text} of its C sources.
+
+    Raises ValueError if the FMU has no two flanges or no sources.
+    """
     model_description = read_description(fmu)
     with archives.open_archive(fmu) as archive:
         sources = {

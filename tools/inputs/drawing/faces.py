@@ -75,22 +75,24 @@ _ROUGHNESS_OPTIONS = ("finish", "Ra", "Rq", "Rz", "surface")
 DEFAULT_MU, DEFAULT_MU_LIMITS = 0.15, (0.1, 0.3)
 """Coefficient of friction if the drawing states none, and its range [1]."""
 DEFAULT_MU_SOURCE = "usual value of dry machined metal, not measured; VDI 2230, Table A6: 0.1 to 0.3"
+"""Source text of the coefficient of friction, if none is stated."""
 DEFAULT_RMS_SLOPE = 0.1
 """Rms slope [1] of a surface if only its height is known."""
 DEFAULT_HURST_EXPONENT = 0.8
 """Hurst exponent [1] of a surface if only its height is known."""
 DEFAULT_FREQUENCY_RATIO = 1.5
-"""Frequency ratio of the Weierstrass-Mandelbrot function [1]."""
+"""Frequency ratio gamma of neighbouring waves of the Weierstrass-Mandelbrot function [1]."""
 RZ_OVER_RA, RZ_OVER_RA_LIMITS = 6.25, (4.0, 10.0)
 """Ratio Rz/Ra of machined faces [1] and its range: Rz 10 um for Ra 1.6 um, as on drawings; turned faces have
 4 to 5, ground and lapped ones 7 to 10."""
 RZ_SOURCE = "usual of machined faces, turned 4 to 5, ground and lapped 7 to 10; nominal pairs of drawings"
+"""Source text of the ratio Rz/Ra."""
 CUT_OFF_WAVELENGTHS = ((0.02e-6, 0.08e-3), (0.1e-6, 0.25e-3), (2e-6, 0.8e-3), (10e-6, 2.5e-3), (np.inf, 8e-3))
 """(largest Ra [m], cut-off wavelength [m]) (ISO 4288, Table 1; ISO 21920-3)."""
 
 
 class Face(NamedTuple):
-    """Roughness of one face.
+    """Roughness of one face of the contact.
 
     Rq                        : rms height [m]
     Rq_min, Rq_max            : lower and upper limit of the rms height [m]
@@ -124,7 +126,7 @@ def read_materials(options: DrawingOptions) -> tuple[TableRow, TableRow]:
 
 
 class HeightRange(NamedTuple):
-    """Range of the rms height h of both faces together, and the larger Rz of both faces.
+    """Range of the combined rms height h of both faces, and the larger Rz of both faces.
 
     h_min, h_max : lower and upper limit [m]
     Rz           : maximum height [m]
@@ -136,7 +138,10 @@ class HeightRange(NamedTuple):
 
 
 def find_law(options: DrawingOptions) -> str:
-    """Name of the interface law. Raises ValueError if --law contradicts --interface-table."""
+    """Name of the interface law that a new joint gets from its options.
+
+    Raises ValueError if --law contradicts --interface-table.
+    """
     stated = options.get("law")
     if options["interface_table"] and stated:
         raise ValueError(f"--law {stated} beside --interface-table; state one of them")
@@ -233,7 +238,7 @@ def _add_gamma(parameter_sheet: ParameterSheet, faces: tuple[Face, Face], h: flo
 
 
 def warn_unknown_shape(options: DrawingOptions) -> list[str]:
-    """Warning if a height alone is stated for the law `roughness`: the shape of the heights is unknown."""
+    """Warning if only a height is stated for the law `roughness`: the height distribution is unknown."""
     stated = [name for name in ("Ra", "Rq", "Rz") if options.get(name)]
     if not stated or options.get("finish") or find_law(options) != ROUGHNESS_LAW:
         return []
@@ -259,6 +264,7 @@ def fractal_roughness(D: float, h: float, longest_wave: float) -> float:
     """
 
     def rms_height(G: Number) -> Number:
+        """Rms height [m] of the surface with the fractal roughness G [m]."""
         return fractal.rms_height(D, G, longest_wave)
 
     # h grows as G^(D - 1)
@@ -299,6 +305,7 @@ def read_faces(options: DrawingOptions) -> tuple[Face, Face]:
 
 
 def _cut_off_wavelength(Ra: float) -> SourcedNumber:
+    """Cut-off wavelength [m] of a roughness measurement, by the arithmetic mean height Ra [m]."""
     wave = next(cut_off for up_to, cut_off in CUT_OFF_WAVELENGTHS if Ra <= up_to)
     return SourcedNumber(
         wave, "estimate", f"cut-off of Ra {Ra * 1e6:.3g} um (ISO 4288): Ra contains no longer waves"
@@ -306,6 +313,7 @@ def _cut_off_wavelength(Ra: float) -> SourcedNumber:
 
 
 def _face_from_finish(finish_name: str) -> Face:
+    """Roughness of a face with a finish of the table (turned, ground, ...)."""
     known = find_row("finishes", finish_name)
     Ra, low, high = (known.numbers[key].value for key in ("Ra", "Ra_low", "Ra_high"))
     text = (
@@ -331,11 +339,12 @@ def _face_from_finish(finish_name: str) -> Face:
 
 
 def _skewness_limits(finish: TableRow) -> tuple[float, float]:
-    """Smallest and largest skewness of a finish [1]."""
+    """Smallest and largest skewness of the heights of a finish [1]."""
     return finish.numbers["skewness_low"].value, finish.numbers["skewness_high"].value
 
 
 def _face_from_number(roughness_name: str, height_text: str, finish: TableRow | None) -> Face:
+    """Roughness of a face from one stated height: Ra, Rq or Rz."""
     stated = parse_quantity(roughness_name, height_text)
     text = f"{roughness_name} {stated.value * 1e6:.4g} um of the drawing"
     if stated.is_range:
@@ -359,7 +368,10 @@ def _face_from_number(roughness_name: str, height_text: str, finish: TableRow | 
 
 
 def _face_from_scan(path: str, options: DrawingOptions) -> Face:
-    """Roughness of a scan; options: unit, spacing and missing value of files that do not state them."""
+    """Roughness of a face from a scan.
+
+    options : unit, spacing and missing value of files that do not state them
+    """
     spacing, missing = options["spacing"], options["missing"]
     heights = reading.read_heights(
         Path(path),
@@ -385,7 +397,7 @@ def _face_from_scan(path: str, options: DrawingOptions) -> Face:
 
 
 def height_fact(parameter_file: ParameterFile) -> dict[str, tuple[float, str, str]]:
-    """Fact about the combined rms height of both faces; empty if it is not known."""
+    """Fact about the combined rms height of both faces of a new joint; empty if the height is not known."""
     h = find_rms_height(parameter_file)
     return {} if h is None else {"h": (float(h), "m", "combined rms height of both faces")}
 
@@ -401,7 +413,7 @@ def warn_hardness(peak_pressure: float, hardness: float) -> list[str]:
 
 
 class LineContact(NamedTuple):
-    """Hertzian line contact: half width [m], area [m2] and greatest pressure [Pa]."""
+    """Result for a Hertzian line contact: half width [m], area [m2] and greatest pressure [Pa]."""
 
     half_width: Number
     area: Number

@@ -69,7 +69,7 @@ def add_interface_table(parameter_sheet: ParameterSheet, path: Path, default_rat
 
 
 def _add_level_range(parameter_sheet: ParameterSheet, data: columns.Columns, source: str) -> None:
-    """Add the range of the level that the columns `stiffness_low` and `stiffness_high` state, if any."""
+    """Add the range of `table.factor` that the columns stiffness_low and stiffness_high state, if any."""
     K = data.columns["stiffness"]
     low, high = (data.columns.get(f"stiffness_{end}", K) for end in ("low", "high"))
     if np.any(wrong := (low > K) | (high < K)):
@@ -86,7 +86,7 @@ def _add_level_range(parameter_sheet: ParameterSheet, data: columns.Columns, sou
 
 
 def _first_comment(path: Path) -> str:
-    """Text of the first comment line of a file after ": "; empty if it has none."""
+    """Text after ": " in the first comment line of a file of points; empty if the file has none."""
     lines = (line.strip() for line in columns.read_text_lines(path))
     text = next((line.lstrip("# ") for line in lines if line.startswith("#")), "")
     return f": {text}" if text else ""

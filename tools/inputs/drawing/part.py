@@ -22,7 +22,7 @@ DrawingOptions = Mapping[str, Any]
 
 @dataclass(frozen=True, slots=True)
 class NewJoint:
-    """A joint made from a drawing.
+    """Joint made from a drawing: parameter file, facts and warnings.
 
     file     : parameter file
     facts    : {name: (value, unit, meaning)} of additional results, which are no parameters
@@ -78,7 +78,7 @@ class ParameterSheet:
         self.ranges[parameter_name] = (low, high)
 
     def add_drawing_value(self, parameter_name: str, value: object) -> None:
-        """Add a parameter that the user states on the drawing."""
+        """Add a parameter whose value the user states on the drawing."""
         self.add_parameter(parameter_name, value, "user", "stated on the drawing")
 
     def add_drawing_number(self, parameter_name: str, number: StatedNumber) -> None:
@@ -95,10 +95,13 @@ class ParameterSheet:
         self.add_parameter(parameter_name, number.value, number.kind, number.source)
 
     def get_value(self, parameter_name: str) -> Any:
+        """Value of a parameter that was added before."""
         return self.entries[parameter_name][0]
 
     def build_file(self, parameter_set_name: str) -> ParameterFile:
-        """Build the parameter file of that name. Parameters that the joint's law does not have are left out.
+        """Build the parameter file with a name of the parameter set.
+
+        Parameters that the joint's law does not have are left out.
 
         Raises ValueError for a missing value, or for a value outside its allowed interval.
         """

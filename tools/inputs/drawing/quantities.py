@@ -17,6 +17,7 @@ from ...common.options import format_option_flag
 from .reading import NUMBER_PATTERN, check_separators
 
 _RANGE_PATTERN = re.compile(r"(.+?)\s*\.\.\s*(.+)")
+"""Pattern of a range LOW..HIGH."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +50,10 @@ class DrawingQuantity:
 
 
 class StatedNumber(NamedTuple):
-    """Number of an option with its range, in SI units; low = value = high if the user states no range."""
+    """Number that the user states for an option, with its range, in SI units.
+
+    Without a range, low = value = high.
+    """
 
     value: float
     low: float
@@ -57,15 +61,16 @@ class StatedNumber(NamedTuple):
 
     @property
     def is_range(self) -> bool:
-        """Whether the user states a range."""
+        """Whether the user states a range for the number."""
         return self.high > self.low
 
 
 MIN_HEIGHT = 1e-4
-"""Least height of a surface [um]: polished silicon wafers have twice as much."""
+"""Smallest plausible roughness height of a surface [um]: polished silicon wafers have twice as much."""
 KGF_PER_MM2 = 9.80665e6
 """Unit of Brinell and Vickers hardness [Pa]: kgf/mm2."""
 BRINELL_AND_VICKERS = dict.fromkeys(("HB", "HBW", "HV"), KGF_PER_MM2)
+"""Units of hardness that a number may have, with their size [Pa]."""
 
 
 def _declare_length(
@@ -263,7 +268,9 @@ def parse_value(option: str, text: str, default_unit: str | None = None) -> floa
 
 
 def parse_values(option: str, text: str, *, separator: str, count: int) -> list[float]:
-    """Parse `count` numbers with a separator between them, as in 200x100.
+    """Parse several numbers of an option with a separator between them, as in 200x100.
+
+    count : how many numbers there must be
 
     Raises ValueError for another count, and as `parse_value`.
     """
@@ -315,7 +322,7 @@ def _parse_value(option: str, text: str, default_unit: str | None) -> float:
 
 
 def _check_limits(option: str, text: str, magnitude: float) -> None:
-    """Raise ValueError if a number [unit of the option] is outside the limits of its quantity."""
+    """Raise ValueError if a number, in the unit of its option, is outside the limits of its quantity."""
     quantity = QUANTITIES[option]
     low, high = quantity.limits
     if quantity.has_sign:

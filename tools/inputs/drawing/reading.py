@@ -9,10 +9,13 @@ from jointfmu.quantity.units import CELSIUS_ZERO_IN_KELVIN, LUBRICANT_TEMPERATUR
 from ...common.options import format_option_flag
 
 _TEMPERATURE_PATTERN = re.compile(r"([+-]?\d+(?:\.\d*)?)\s*(K|degC|°C|C|)")
+"""Pattern of a temperature and its unit."""
 NUMBER_PATTERN = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)\s*(.*)", re.IGNORECASE)
 """Pattern of a number and its unit."""
 _COMMA_PATTERN = re.compile(r"[+-]?\d*,\d+(?:,\d+)*(.*)")
+"""Pattern of a number with a decimal comma."""
 _THOUSANDS_PATTERN = re.compile(r"[+-]?\d{1,3}(?:,\d{3})+(.*)")
+"""Pattern of a number with commas between thousands."""
 
 
 def check_separators(option: str, number_text: str) -> None:
@@ -30,7 +33,7 @@ def check_separators(option: str, number_text: str) -> None:
 def parse_number(
     option: str, number_text: str, unit: str, target_unit: str, lower_bound: float | None = 0.0
 ) -> float:
-    """Parse the number of an option.
+    """Parse the number of an option of a drawing, with its own unit or the unit of the option.
 
     option      : name of the option, for the error
     unit        : unit of a number that is stated without one
@@ -91,7 +94,9 @@ def parse_numbers(
     count: int,
     lower_bound: float | None = 0.0,
 ) -> list[float]:
-    """Parse `count` numbers with a separator between them: 200x100.
+    """Parse several numbers of an option with a separator between them: 200x100.
+
+    count : how many numbers there must be
 
     Raises ValueError for another count, and as `parse_number`.
     """
@@ -106,7 +111,7 @@ def parse_numbers(
 
 
 def expand_to_sides(option: str, texts: Sequence[str] | None) -> tuple[str, str] | None:
-    """Expand one or two texts to a text for each side; None if there is none.
+    """Expand one or two texts of an option to a text for each of the two sides; None if there is none.
 
     Raises ValueError for more than two texts.
     """

@@ -21,6 +21,7 @@ MATERIAL_COLUMNS = {
     "alpha": quantity_field("1/K", "thermal expansion coefficient"),
     "H": quantity_field("Pa", "hardness"),
 }
+"""Columns of the table of materials: {name in the file: field with SI unit and meaning}."""
 FINISH_COLUMNS = {
     "Ra": quantity_field("m", "usual Ra"),
     "Ra_low": quantity_field("m", "least Ra"),
@@ -31,11 +32,12 @@ FINISH_COLUMNS = {
     "skewness_low": quantity_field("1", "least skewness"),
     "skewness_high": quantity_field("1", "greatest skewness"),
 }
+"""Columns of the table of finishes: {name in the file: field with SI unit and meaning}."""
 
 
 @dataclass(frozen=True, slots=True)
 class TableRow:
-    """A row of a table: name, other names, title, and {column: number}."""
+    """Row of a shipped table of materials or finishes: name, other names, title, and {column: number}."""
 
     name: str
     aliases: tuple[str, ...]
@@ -45,7 +47,10 @@ class TableRow:
 
 @cache
 def read_table(table_name: str) -> dict[str, TableRow]:
-    """Read a table, `materials` or `finishes`: {name: row}."""
+    """Read the shipped table of materials or of finishes: {name: row}.
+
+    table_name : `materials` or `finishes`
+    """
     path, document = _read_document(table_name)
     columns = {"materials": MATERIAL_COLUMNS, "finishes": FINISH_COLUMNS}[table_name]
     rows = {}
@@ -58,7 +63,7 @@ def read_table(table_name: str) -> dict[str, TableRow]:
 
 
 def find_row(table_name: str, row_name: str) -> TableRow:
-    """Find a row of a table by one of its names; case and hyphens are ignored.
+    """Find a row of the table of materials or finishes by one of its names. Case and hyphens are ignored.
 
     Raises ValueError if no row has the name.
     """
@@ -73,6 +78,7 @@ def find_row(table_name: str, row_name: str) -> TableRow:
 
 
 def _normalise_name(text: str) -> str:
+    """Name of a material or finish without case and hyphens, for comparisons."""
     return text.lower().replace("-", " ").strip()
 
 
@@ -121,7 +127,7 @@ def fine_pitches() -> dict[str, tuple[float, ...]]:
 
 
 def find_thread(name: str, pitch: float | None = None) -> Thread:
-    """Find a thread by its name, as in M12, with the coarse pitch or a fine pitch [m].
+    """Find a metric thread by its name, as in M12, with the coarse pitch or a fine pitch [m].
 
     Raises ValueError for an unknown thread or pitch.
     """
@@ -187,7 +193,7 @@ def read_tightening_methods() -> dict[str, TighteningMethod]:
 
 
 def thread_source(column: str) -> str:
-    """Source of a column in the table of bolts."""
+    """Source text of a column in the table of bolts."""
     return str(_read_document("bolts")[1]["columns"][column]["source"])
 
 
@@ -205,7 +211,7 @@ def read_embedding() -> list[tuple[float, tuple[float, ...]]]:
 
 @cache
 def read_property_classes() -> dict[str, dict[str, tuple[float, float]]]:
-    """Read the property classes: {class: {"yield" or "proof": stress [Pa] up to M16, and above}}."""
+    """Read the property classes of bolts: {class: {"yield" or "proof": stress [Pa] up to M16, and above}}."""
     stated = _read_document("bolts")[1]["classes"]
     size = conversion_factor(stated["unit"], "Pa")
     return {
@@ -227,6 +233,7 @@ def property_class_strength(property_class: str, strength_kind: str, thread: Thr
 
 
 def _read_document(table_name: str) -> tuple[Path, dict[str, Any]]:
+    """Read the TOML document of a shipped table."""
     path = Path(str(files("jointfmu_models") / "tables" / f"{table_name}.toml"))
     document = read_document(path, "a table")
     return path, {key: value for key, value in document.items() if key not in ("schema", "table")}

@@ -24,24 +24,25 @@ DEFAULT_FRICTION, FRICTION_INTERVAL = 0.12, (0.08, 0.16)
 """Coefficient of friction [1] in the thread and under the head if none is known, and its interval: Table A5,
 friction class B."""
 ROUNDING_TOLERANCE = 1e-6
-"""Relative excess [1] over the Rz of a row that counts as none: Rz 10 um belongs to the row of 10 um."""
+"""Relative excess of Rz over that of a table row [1] that is ignored: 10 um belong to the row of 10 um."""
 FRICTION_SOURCE = "VDI 2230, Table A5, friction class B"
+"""Source text of the coefficients of friction in thread and under head."""
 MAX_UTILISATION_ERROR = 0.02
 """Relative excess [1] over YIELD_UTILISATION that counts as none: Table A1 prints torques with two digits."""
 
 
 def pitch_diameter(thread: Thread) -> float:
-    """Pitch diameter d_2 [m] (ISO 724)."""
+    """Pitch diameter d_2 [m] of a metric thread (ISO 724)."""
     return thread.nominal_diameter - 0.64952 * thread.pitch
 
 
 def minor_diameter(thread: Thread) -> float:
-    """Minor diameter d_3 [m] (ISO 724)."""
+    """Minor diameter d_3 [m] of a metric thread (ISO 724)."""
     return thread.nominal_diameter - 1.22687 * thread.pitch
 
 
 def stress_area(thread: Thread) -> float:
-    """Stress area A_s [m2] (ISO 898-1)."""
+    """Tensile stress area A_s [m2] of a metric thread (ISO 898-1)."""
     return 0.0625 * np.pi * (pitch_diameter(thread) + minor_diameter(thread)) ** 2
 
 
@@ -240,7 +241,7 @@ STRONGEST_PROPERTY_CLASS = "12.9"
 
 
 def describe_stated_bolt(thread_name: str, property_class: str) -> str:
-    """Part of a source that states the bolt; `proof_load` reads it."""
+    """Text on the bolt that the user states, as part of the source of the preload; `proof_load` reads it."""
     return f"bolts {thread_name}-{property_class} as stated"
 
 

@@ -1,1 +1,1 @@
-"""Nodal contact results: reading from files, checks, reduction to few points for an FMU."""
+"""Pressure fields: nodal contact results, read from files, checked, and reduced to few points for an FMU."""

@@ -3,8 +3,8 @@
 A field report of Abaqus/CAE names the part of its nodes. A line of dashes separates the column names from the
 rows. If the page is too narrow for all columns, names and rows continue in the next line. A data file of
 Abaqus/Standard has the column names after NODE. Its rows may contain a status (CL, OP), rows of zeros are
-left out, and each increment repeats the tables. If there are several frames, the last one with a pressure is
-read. An input deck (of Abaqus or CalculiX, without parts) gives nodes and elements.
+left out, and each increment repeats the tables. If there are several frames (increments), the last one with a
+pressure is read. An input deck (of Abaqus or CalculiX, without parts) gives nodes and elements.
 """
 
 import re
@@ -21,12 +21,15 @@ from .nodal_result import NUMBER_PATTERN, NodalResult, read_lines
 
 PRESSURE_COLUMN, AREA_COLUMN = "CPRESS", "CNAREA"
 _COORDINATE_COLUMNS = ("COOR1", "COOR2", "COOR3")
+"""Names of the columns with the coordinates of a node."""
 _COLUMN_NAME_PATTERN = re.compile(r"[A-Z]+\d*(?:\..*)?")
+"""Pattern of the name of a column."""
 _SUMMARY_WORDS = ("MINIMUM", "MAXIMUM", "TOTAL")
+"""First words of the lines below a table with its extreme values."""
 
 
 class ListingRow(NamedTuple):
-    """One row of a listing: values at a node.
+    """Row of a listing (text output of the solver): values at one node.
 
     file_and_line      : file and line
     step_and_increment : step and increment
@@ -43,7 +46,10 @@ class ListingRow(NamedTuple):
 
 
 class NodalValues(NamedTuple):
-    """Nodal values of one frame: {(part instance, node): value}, in the units of the file."""
+    """Nodal values of one frame (increment) of an Abaqus result: {(part instance, node): value}.
+
+    The values are in the units of the file.
+    """
 
     pressure: dict[tuple[str, int], float]
     area: dict[tuple[str, int], float]
@@ -51,7 +57,7 @@ class NodalValues(NamedTuple):
 
 
 def read_abaqus(paths: Sequence[Path], length_unit: float, pressure_unit: float) -> NodalResult:
-    """Read a nodal contact result from Abaqus listings.
+    """Read a nodal contact result from Abaqus listings (text output): field reports or data files.
 
     Coordinates and nodal areas come from the listings, or from an input deck among the files.
 
@@ -112,7 +118,7 @@ def _combine_pressures_with_deck(
 
 
 def _read_values(paths: Sequence[Path]) -> tuple[NodalValues, bool]:
-    """Read pressures and areas of the last frame with a pressure, and the last coordinates.
+    """Read pressures and areas of the last frame with a pressure, and the last coordinates, from listings.
 
     The second result tells whether a file leaves out rows of zeros.
     """
@@ -145,7 +151,7 @@ def _read_values(paths: Sequence[Path]) -> tuple[NodalValues, bool]:
 
 
 def _read_report_rows(path: Path, lines: list[str]) -> Iterator[ListingRow]:
-    """Rows of the nodal tables of a field report; tables by element are ignored."""
+    """Rows of the nodal tables of an Abaqus field report; tables by element are ignored."""
     step = frame = instance = ""
     head: list[str] | None = None  # lines between the name of the part and the rows
     columns: list[str] = []
@@ -213,7 +219,7 @@ def _parse_row(
     columns: Sequence[str],
     row_words: Sequence[str],
 ) -> ListingRow:
-    """Parse one row: a node and a number for each column. Raises ValueError for any other line."""
+    """Parse one row of a listing: a node and a number for each column; ValueError for any other line."""
     numbers = row_words[-len(columns) :]
     if (
         not row_words[0].isdigit()
@@ -234,7 +240,7 @@ def _parse_row(
 
 
 def _read_data_file_rows(path: Path, lines: list[str]) -> Iterator[ListingRow]:
-    """Rows of the nodal tables of a data file."""
+    """Rows of the nodal tables of an Abaqus data file."""
     step = increment = ""
     columns: list[str] = []
     for number, line in enumerate(lines, 1):
@@ -255,7 +261,9 @@ def _read_data_file_rows(path: Path, lines: list[str]) -> Iterator[ListingRow]:
 
 
 _SOLID_NAME_PATTERN = re.compile(r"(?:AC3D|DC3D|C3D)(\d+)")
+"""Pattern of the type name of a solid element: its number of nodes."""
 _SHELL_NAME_PATTERN = re.compile(r"(?:S|SC|R3D|M3D|SFM3D|STRI|CPS|CPE|CPEG|CAX)(\d+)")
+"""Pattern of the type name of a shell or plane element: its number of nodes."""
 SOLID_CELLS = {
     4: "tetra",
     5: "pyramid",
@@ -265,6 +273,7 @@ SOLID_CELLS = {
     15: "wedge15",
     20: "hexahedron20",
 }
+"""Cell types of meshio of solid elements, by the number of nodes in the name of the element."""
 SHELL_CELLS = {3: "triangle", 4: "quad", 6: "triangle6", 65: "triangle6", 8: "quad8"}
 """Cell types of meshio by the number of nodes in the name of an element; the node order is the same."""
 UNSUPPORTED_KEYWORDS = ("INSTANCE", "INCLUDE", "NGEN", "NCOPY", "NFILL", "ELGEN", "ELCOPY", "SYSTEM", "NMAP")
@@ -272,7 +281,7 @@ UNSUPPORTED_KEYWORDS = ("INSTANCE", "INCLUDE", "NGEN", "NCOPY", "NFILL", "ELGEN"
 
 
 def read_deck(path: Path) -> FiniteElementMesh:
-    """Read the mesh of an input deck: solid elements, or shell elements if there are no solids.
+    """Read the mesh of an input deck (of Abaqus or CalculiX): solids, or shells if there are no solids.
 
     Other elements are ignored.
 
@@ -307,7 +316,10 @@ def read_deck(path: Path) -> FiniteElementMesh:
 
 
 def _data_lines(path: Path) -> Iterator[tuple[int, str, str, list[str]]]:
-    """Data lines of *NODE and *ELEMENT: (line number, keyword, cell type of meshio, words)."""
+    """Yield data lines of *NODE and *ELEMENT in an input deck.
+
+    Each is (line number, keyword, cell type of meshio, words).
+    """
     keyword = kind = ""
     for number, line in enumerate(read_lines(path, "an input deck"), 1):
         if not line.strip() or line.startswith("**"):
@@ -325,7 +337,7 @@ def _data_lines(path: Path) -> Iterator[tuple[int, str, str, list[str]]]:
 
 
 def _cell_type(keyword_parameters: list[str]) -> str:
-    """Cell type of meshio for the parameter TYPE of *ELEMENT; empty if the element is not supported."""
+    """Cell type of meshio for TYPE of *ELEMENT in an input deck; empty if it is not supported."""
     values = (p.split("=")[1].strip().upper() for p in keyword_parameters if p.upper().startswith("TYPE"))
     name = next(values, "")
     for pattern, kinds in ((_SOLID_NAME_PATTERN, SOLID_CELLS), (_SHELL_NAME_PATTERN, SHELL_CELLS)):

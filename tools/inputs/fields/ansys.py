@@ -19,8 +19,11 @@ from .mesh import FiniteElementMesh, make_missing_reader_error
 from .nodal_result import NUMBER_PATTERN, NodalResult, read_lines
 
 _LISTING_ELEMENT_COLUMNS = 6
-"""Number of columns before the nodes of an element: number, material, type, constants, system, section."""
+"""Number of columns before the nodes of an element in a listing [1].
+
+They are number, material, type, constants, coordinate system, section."""
 PRESSURE_COLUMN = "PRES"
+"""Name of the column with the contact pressure."""
 
 
 def read_ansys(paths: Sequence[Path], length_unit: float, pressure_unit: float) -> NodalResult:
@@ -138,11 +141,15 @@ def _read_listing_rows(path: Path) -> Iterator[tuple[str, str, list[float]]]:
 
 
 def _is_number(word: str) -> bool:
+    """Whether a word of a listing is a number."""
     return NUMBER_PATTERN.fullmatch(word) is not None
 
 
 def _parse_numbers(line: str) -> list[float] | None:
-    """Numbers of a line that has only numbers, else None. They may have no blank between: 12-0.5E-003."""
+    """Numbers of a listing line that has only numbers, else None.
+
+    They may have no blank between: 12-0.5E-003.
+    """
     if NUMBER_PATTERN.sub("", line).strip():
         return None
     return [float(x.replace("D", "E").replace("d", "e")) for x in NUMBER_PATTERN.findall(line)]
@@ -151,7 +158,9 @@ def _parse_numbers(line: str) -> list[float] | None:
 def _classify_row(
     column_names: list[str], row_numbers: list[float], file_and_line: str, previous_content: str
 ) -> tuple[str, list[float]]:
-    """Content of a row (see `_read_listing_rows`) and its relevant numbers, from the head of its table.
+    """Content of a row of a listing, and its relevant numbers, from the head of its table.
+
+    The content is a word as in `_read_listing_rows`.
 
     previous_content : content of the row before
     """
@@ -176,8 +185,9 @@ def _classify_row(
 
 
 CONTACT_ELEMENT_TYPES = (173, 174)
+"""Numbers of the ANSYS types of contact elements that are read."""
 SOLID_ELEMENT_TYPES = (45, 62, 64, 65, 72, 73, 90, 92, 95, 185, 186, 187, 285)
-"""Numbers of the ANSYS element types that are read; others are ignored."""
+"""Numbers of the ANSYS types of solid elements that are read; other elements are ignored."""
 _ARCHIVE_ELEMENT_COLUMNS = 10
 """Count of numbers before the nodes of an element in an archive."""
 _DEGENERATE_CELLS = {
@@ -194,10 +204,11 @@ _DEGENERATE_CELLS = {
 
 Repeated nodes of the brick give the other shapes."""
 _TETRA_CELLS = {4: "tetra", 10: "tetra10"}
+"""Cell types of meshio of tetrahedra, by their number of nodes."""
 
 
 def read_archive(path: Path) -> FiniteElementMesh:
-    """Read the mesh of an archive: contact elements (CONTA173, CONTA174), or solids if there are none.
+    """Read the mesh of an ANSYS archive: contact elements (CONTA173, CONTA174), or solids if there are none.
 
     Raises ValueError (one line): mapdl-archive is missing or cannot read the file, there are no such
     elements, an element has an undefined node.
@@ -227,7 +238,7 @@ def read_archive(path: Path) -> FiniteElementMesh:
 
 
 def _open_archive(path: Path) -> Any:
-    """Open an archive with mapdl-archive; ValueError if the package is missing or cannot read the file."""
+    """Open an ANSYS archive with mapdl-archive; ValueError if it is missing or cannot read the file."""
     try:
         import mapdl_archive
     except ImportError as error:
@@ -246,7 +257,7 @@ def _open_archive(path: Path) -> Any:
 
 
 def _convert_element(node_numbers: list[int], is_contact: bool) -> tuple[str, list[int]]:
-    """Cell type of meshio and nodes of an element, without repeated nodes; empty if it is not supported."""
+    """Cell type of meshio and nodes of an ANSYS element without repeated nodes; empty if not supported."""
     if is_contact:
         return _convert_face([node for node in node_numbers if node])
     if len(node_numbers) in _TETRA_CELLS:
@@ -258,7 +269,10 @@ def _convert_element(node_numbers: list[int], is_contact: bool) -> tuple[str, li
 
 
 def _brick_shape(node_numbers: list[int]) -> str:
-    """Shape of a brick with corners I J K L M N O P, some of which may be repeated."""
+    """Shape of a brick element with repeated corners: hexahedron, wedge, pyramid or tetrahedron.
+
+    The corners are I J K L M N O P.
+    """
     triangle = node_numbers[2] == node_numbers[3]
     if node_numbers[4] == node_numbers[5] == node_numbers[6] == node_numbers[7]:
         return "tetra" if triangle else "pyramid"
@@ -266,7 +280,7 @@ def _brick_shape(node_numbers: list[int]) -> str:
 
 
 def _convert_face(node_numbers: list[int]) -> tuple[str, list[int]]:
-    """Cell type of meshio and nodes of a contact face I J K L (M N O P); a triangle if K equals L."""
+    """Cell type of meshio and nodes of a contact element I J K L (M N O P); a triangle if K equals L."""
     if len(node_numbers) in (4, 8) and node_numbers[2] == node_numbers[3]:
         node_numbers = [
             node_numbers[i] for i in ((0, 1, 2) if len(node_numbers) == 4 else (0, 1, 2, 4, 5, 7))

@@ -14,6 +14,7 @@ from jointfmu.mechanics.footprint.distribution import MergedDistribution, Pressu
 from jointfmu.quantity import Array
 
 PressureFunction = Callable[[Any, PressureDistribution, Array, Array], Array]
+"""Function (joint, pressure distribution, preloads, moments) -> nodal pressures."""
 
 
 class BoltedInterface(InterfaceLaw, Protocol):
@@ -35,7 +36,7 @@ class BoltedInterface(InterfaceLaw, Protocol):
 
     @property
     def row_distance(self) -> float:
-        """Distance L_a [m] between the two rows."""
+        """Distance L_a [m] between the two bolt rows that carry a moment."""
 
     @property
     def pattern(self) -> PressureSource:
@@ -43,7 +44,7 @@ class BoltedInterface(InterfaceLaw, Protocol):
 
 
 def check_pressure_field(joint: str) -> None:
-    """Raise ValueError if a joint cannot have a pressure field."""
+    """Raise ValueError if the pressure of a joint cannot be given by a field."""
     if joint != KIND.name:
         raise ValueError(f"joint = {joint!r} has no pressure field; expected {KIND.name!r}")
 
@@ -56,7 +57,7 @@ def nodal_pressures(
 ) -> Array:
     """Nodal pressures (m, n) [Pa], >= 0: (preload n_bolts preload_shape + moment/L_a moment_shape)/A_0.
 
-    pressure_shape : pressure shape (n)
+    pressure_shape : pressure distribution at n nodes, divided by its mean
     preload        : preloads (m) [N] per bolt, without a further loss by embedding: a field is computed for
                      the preload that remains
     moment         : moments (m) [N.m]

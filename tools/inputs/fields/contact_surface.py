@@ -14,11 +14,13 @@ from .mesh import FACE_CORNER_COUNTS, nodal_areas
 from .nodal_result import ContactField, NodalResult, NodeIndices
 
 AXIS_NAMES = "xyz"
+"""Names of the axes of a file."""
 PLANE_TOLERANCE = 1e-3
 """Largest distance of a node from the contact plane over the size of the contact [1]."""
 COINCIDENCE_TOLERANCE = 1e-6
 """Distance of two nodes over the size of the contact [1], below which they coincide."""
 BODY_SIDES = ("below", "above")
+"""Sides of the contact plane on which the body may lie whose surface is read."""
 OPEN_NODE_OPTIONS = ("refuse", "keep", "drop")
 """Treatment of nodes without pressure: raise an error, keep them as just touching, leave their area out."""
 
@@ -74,7 +76,7 @@ class ContactSurface:
     pressure: Array
 
     def describe_node(self, contact_node: int) -> str:
-        """File and number of a node of the contact, for messages."""
+        """File and number of a contact node, for messages."""
         return self.source_result.describe_node(int(self.node_indices[contact_node]))
 
     def select_pressure_field(self, node_mask: NDArray[np.bool_]) -> ContactField:
@@ -104,7 +106,7 @@ def extract_surface(nodal_result: NodalResult, contact_plane: ContactPlane) -> C
 
 
 def _check_surface(contact_surface: ContactSurface) -> None:
-    """Raise ValueError for a pressure or area out of range, and for nodes that coincide."""
+    """Raise ValueError for a nodal pressure or area out of range, and for nodes that coincide."""
     p = contact_surface.pressure
     for invalid, text in (
         (~np.isfinite(p), "pressure = {p:g} is not a finite number"),
@@ -129,7 +131,7 @@ def _check_surface(contact_surface: ContactSurface) -> None:
 
 
 def _contact_faces(nodal_result: NodalResult, contact_plane: ContactPlane) -> list[NodeIndices]:
-    """Contact faces: faces in the plane of the nodes with pressure, of the bodies with pressure."""
+    """Element faces of the contact: in the plane of the nodes with pressure, of the bodies with pressure."""
     loaded = np.flatnonzero(np.nan_to_num(nodal_result.pressure) != 0.0)
     if not loaded.size:
         raise ValueError(f"{nodal_result.path}: no node has a pressure")
@@ -162,7 +164,7 @@ def _contact_faces(nodal_result: NodalResult, contact_plane: ContactPlane) -> li
 
 
 def _check_not_line(nodal_result: NodalResult, loaded_nodes: NodeIndices) -> None:
-    """Raise ValueError if the contact is a line, as in a two-dimensional model."""
+    """Raise ValueError if the contact nodes lie on a line, as in a two-dimensional model."""
     offset = nodal_result.position[loaded_nodes] - nodal_result.position[loaded_nodes[0]]
     farthest = offset[np.argmax(np.sum(offset**2, axis=1))]
     size = float(np.linalg.norm(farthest))
@@ -175,7 +177,7 @@ def _check_not_line(nodal_result: NodalResult, loaded_nodes: NodeIndices) -> Non
 
 
 def _body_of_node(nodal_result: NodalResult) -> NDArray[np.int64]:
-    """Number of the body of each node; 0 if the result has no bodies."""
+    """Number of the body to which each node belongs; 0 if the result has no bodies."""
     return (
         np.zeros(len(nodal_result.position), dtype=np.int64)
         if nodal_result.body_of_node is None

@@ -48,7 +48,7 @@ def read_frd(path: Path, length_unit: float, pressure_unit: float) -> NodalResul
 
 
 def _read_text(path: Path) -> str:
-    """Read a file as text; ValueError if it is no ASCII .frd file."""
+    """Read a CalculiX result file as text; ValueError if it is no ASCII .frd file."""
     data = read_bytes(path, "a CalculiX .frd file")
     if not data.startswith(b"    1"):
         raise ValueError(
@@ -58,7 +58,7 @@ def _read_text(path: Path) -> str:
 
 
 def _block_lines(lines: list[str], start_line: int) -> Iterator[tuple[int, str]]:
-    """Lines of a block as (line number, line): those after `start_line`, up to the end of the block."""
+    """Lines of a block of an .frd file, as (line number, line), up to the end of the block."""
     for number in range(start_line + 1, len(lines)):
         if lines[number].startswith(" -3"):
             return
@@ -66,7 +66,7 @@ def _block_lines(lines: list[str], start_line: int) -> Iterator[tuple[int, str]]
 
 
 def _find_block(path: Path, lines: list[str], block_key: str, block_description: str) -> int:
-    """Line number of the last block with this key; ValueError if there is none or if it is binary.
+    """Line number of the last block of an .frd file with a key; ValueError if there is none or it is binary.
 
     block_description : name of the content in the message
     """
@@ -79,7 +79,7 @@ def _find_block(path: Path, lines: list[str], block_key: str, block_description:
 
 
 def _read_nodes(path: Path, lines: list[str]) -> tuple[NDArray[np.int64], Array]:
-    """Read node numbers (n) and coordinates (n, 3) in the unit of the file."""
+    """Read node numbers (n) and coordinates (n, 3), in the unit of the file, from an .frd file."""
     names, coordinates = [], []
     for number, line in _block_lines(lines, _find_block(path, lines, "    2C", "nodes")):
         name, values = _parse_row(path, number, line, 3)
@@ -89,7 +89,7 @@ def _read_nodes(path: Path, lines: list[str]) -> tuple[NDArray[np.int64], Array]
 
 
 def _parse_row(path: Path, line_index: int, line: str, min_value_count: int) -> tuple[int, list[float]]:
-    """Node number and values of a line -1: I10 after the key, then E12.5 without blanks between.
+    """Node number and values of a line -1 of an .frd file: I10 after the key, then E12.5 without blanks.
 
     Raises ValueError if the line has fewer than `min_value_count` values.
     """
@@ -106,7 +106,7 @@ def _parse_row(path: Path, line_index: int, line: str, min_value_count: int) -> 
 
 
 def _read_cells(path: Path, lines: list[str]) -> dict[str, list[list[int]]]:
-    """Read the elements: {cell type of meshio: node numbers of each cell}."""
+    """Read the elements of an .frd file: {cell type of meshio: node numbers of each cell}."""
     cells: dict[str, list[list[int]]] = {}
     kind, nodes = "", list[int]()
     for number, line in _block_lines(lines, _find_block(path, lines, "    3C", "elements")):
@@ -127,7 +127,7 @@ def _read_cells(path: Path, lines: list[str]) -> dict[str, list[list[int]]]:
 
 
 def _read_pressures(path: Path, lines: list[str]) -> Iterator[tuple[int, float]]:
-    """Node numbers and contact pressures of the last contact result.
+    """Node numbers and contact pressures of the last contact result of an .frd file.
 
     With surface-to-surface contact, CalculiX lists 0 for all other nodes. With node-to-surface contact, it
     leaves out nodes whose gap is too large for a contact spring.

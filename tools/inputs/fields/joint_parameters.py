@@ -24,11 +24,13 @@ from .nodal_result import ContactField
 from .reduction import MAX_KEPT_NODES, Reduction, reduce_field
 
 FORCE_TOLERANCE = 0.01
-"""Largest relative difference of the field's force from the total preload [1]."""
+"""Largest relative difference between the force of a pressure field and the total preload [1]."""
 MOMENT_RATIO_RANGE = (0.5, 1.5)
 """Allowed range of the moment of the pressure over the given moment [1]; bolt forces carry the rest."""
 _REPLACED_PARAMETER_PREFIXES = ("pattern.", "plate.", "field.", "bodies.", "sides")
-"""Prefixes of the entries that a field replaces. Bodies are replaced too: they belong to another contact."""
+"""Prefixes of the parameter names that a pressure field replaces.
+
+Elastic bodies are replaced too: they belong to another contact."""
 
 
 def insert_field(
@@ -178,7 +180,7 @@ def _bolt_force_ratio(
 
 
 def _check_same_nodes(contact_field: ContactField, moment_field: ContactField) -> None:
-    """Raise ValueError if two fields have different nodes; the message names the first difference."""
+    """Raise ValueError, which names the first difference, if two pressure fields have different nodes."""
     if contact_field.area.size != moment_field.area.size:
         raise ValueError(
             f"the field with a moment has {moment_field.area.size} nodes, "

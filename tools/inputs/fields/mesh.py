@@ -29,7 +29,9 @@ LINEAR_FACES: dict[int, tuple[tuple[int, ...], ...]] = {
 }
 """{number of nodes of a face: corners of the linear faces into which it is divided}."""
 FACE_CORNER_COUNTS = {3: 3, 4: 4, 6: 3, 8: 4, 9: 4}
+"""{number of nodes of a face: number of its corners}."""
 _GAUSS_POINT = 1.0 / np.sqrt(3.0)
+"""Coordinate of the Gauss points of a quadrilateral in its reference square [1]."""
 
 
 def nodal_areas(position: Array, faces: Sequence[NodeIndices]) -> Array:
@@ -71,16 +73,24 @@ def _integrate_quadrilateral_shape_functions(corners: Array) -> Array:
 
 
 _TETRA_FACES = ((0, 1, 2), (0, 1, 3), (1, 2, 3), (0, 2, 3))
+"""Node indices of the faces of a tetrahedron."""
 _WEDGE_FACES = ((0, 1, 2), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (0, 2, 5, 3))
+"""Node indices of the faces of a wedge."""
 _PYRAMID_FACES = ((0, 1, 2, 3), (0, 1, 4), (1, 2, 4), (2, 3, 4), (0, 3, 4))
+"""Node indices of the faces of a pyramid."""
 _BRICK_FACES = ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (0, 3, 7, 4))
+"""Node indices of the faces of a hexahedron."""
 _TETRA_EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
+"""Node indices of the edges of a tetrahedron."""
 _WEDGE_EDGES = ((0, 1), (1, 2), (0, 2), (3, 4), (4, 5), (3, 5), (0, 3), (1, 4), (2, 5))
+"""Node indices of the edges of a wedge."""
 _PYRAMID_EDGES = ((0, 1), (1, 2), (2, 3), (0, 3), (0, 4), (1, 4), (2, 4), (3, 4))
+"""Node indices of the edges of a pyramid."""
 _BRICK_EDGES = (
     *((0, 1), (1, 2), (2, 3), (0, 3), (4, 5), (5, 6), (6, 7), (4, 7)),
     *((0, 4), (1, 5), (2, 6), (3, 7)),
 )
+"""Node indices of the edges of a hexahedron."""
 _NodeTuples = tuple[tuple[int, ...], ...]
 VOLUME_CELLS: dict[str, tuple[int, _NodeTuples, _NodeTuples]] = {
     "tetra": (4, _TETRA_FACES, ()),
@@ -92,8 +102,9 @@ VOLUME_CELLS: dict[str, tuple[int, _NodeTuples, _NodeTuples]] = {
     "hexahedron": (8, _BRICK_FACES, ()),
     "hexahedron20": (8, _BRICK_FACES, _BRICK_EDGES),
 }
-"""{cell type: (number of corners, corners of each face, edges in the order of their mid-side nodes)}."""
+"""{volume cell type: (number of corners, corners of each face, edges in the order of mid-side nodes)}."""
 SURFACE_CELLS = {"triangle": 3, "quad": 4, "triangle6": 6, "quad8": 8, "quad9": 9}
+"""{type of a surface cell: number of its nodes}."""
 CELL_NODE_COUNTS = SURFACE_CELLS | {
     name: corners + len(edges) for name, (corners, _, edges) in VOLUME_CELLS.items()
 }
@@ -103,7 +114,10 @@ IGNORED_CELLS = ("vertex", "line", "line3")
 
 
 def boundary_faces(cells: Mapping[str, NodeIndices]) -> list[NodeIndices]:
-    """Boundary faces of the volume cells: faces of one cell only. Without volumes: the surface cells."""
+    """Faces on the boundary of a mesh: faces of one volume cell only.
+
+    Without volume cells: the surface cells.
+    """
     volumes = {name: block for name, block in cells.items() if name in VOLUME_CELLS}
     if not volumes:
         return [block for name, block in cells.items() if name in SURFACE_CELLS]
@@ -126,7 +140,7 @@ def _cell_faces(cell_type: str) -> list[tuple[int, ...]]:
 
 
 def _unshared_faces(faces: NodeIndices, face_node_count: int) -> NodeIndices:
-    """Select the faces that occur only once, from faces (k, nodes of a face)."""
+    """Select the faces that belong to one cell only, from faces (k, nodes of a face)."""
     keys = np.sort(faces[:, : FACE_CORNER_COUNTS[face_node_count]], axis=1)
     _, first, count = np.unique(keys, axis=0, return_index=True, return_counts=True)
     return np.asarray(faces[np.sort(first[count == 1])])
@@ -180,11 +194,11 @@ class FiniteElementMesh:
         return cls(node_numbers, position, cells)
 
     def faces(self) -> list[NodeIndices]:
-        """Surface cells, or the boundary faces of the volume cells."""
+        """Surface cells of the mesh, or the boundary faces of its volume cells."""
         return boundary_faces(self.cells)
 
     def body_of_node(self) -> NDArray[np.int64]:
-        """Number (n) of the body of each node."""
+        """Number (n) of the body to which each node belongs."""
         return label_bodies(self.cells, self.node_numbers.size)
 
     def nodal_values(self, listed_values: Mapping[int, float]) -> Array:
@@ -203,7 +217,9 @@ class FiniteElementMesh:
         pressure_unit: float,
         omits_open_nodes: bool = False,
     ) -> NodalResult:
-        """Nodal result from pressures that the file `path` lists.
+        """Nodal result from pressures that a file lists for nodes of this mesh.
+
+        path : the file
 
         listed_values    : {node number: pressure in the unit of the file}
         length_unit, pressure_unit : units of mesh and listing in SI units
@@ -233,7 +249,7 @@ def select_faces_with_values(faces: Sequence[NodeIndices], nodal_values: Array) 
 
 
 def make_missing_reader_error(path: Path, error: ImportError) -> ValueError:
-    """Error for a missing package that is needed to read a file."""
+    """Error for a missing package that is needed to read a mesh file."""
     return ValueError(
         f"the package {error.name} is missing, needed to read {path}; "
         "install it with: pip install 'jointfmu[field]'"

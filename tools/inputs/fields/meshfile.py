@@ -58,7 +58,10 @@ def read_mesh(
 
 
 def is_format_supported(path: Path) -> bool:
-    """Whether meshio can read files with this suffix. True if meshio is missing: the reader then raises."""
+    """Whether meshio can read mesh files with the ending of this path.
+
+    True if meshio is missing: the reader then raises.
+    """
     try:
         from meshio import extension_to_filetypes
     except ImportError:
@@ -85,7 +88,7 @@ def _read_meshio(path: Path) -> Any:
 
 
 def _select_values(path: Path, point_data: dict[str, Any], point_data_name: str | None) -> Array:
-    """Nodal values (n) of the selected point data or component."""
+    """Nodal values (n) of the point data, or of one of their components, that a name selects."""
     arrays = {name: np.asarray(value) for name, value in point_data.items()}
     listed = [f"{n} ({v.shape[1]} components)" if v.ndim > 1 else n for n, v in arrays.items()]
     available = ", ".join(listed) or "none"

@@ -23,7 +23,7 @@ NUMBER_PATTERN = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][-+]?\d+)?")
 
 
 def read_lines(path: Path, file_description: str) -> list[str]:
-    """Read the lines of a listing; ValueError (one line) if the file cannot be read.
+    """Read the lines of a text file of results; ValueError (one line) if the file cannot be read.
 
     file_description : name of the content in the message
     """
@@ -45,7 +45,7 @@ class ContactField:
 
     @property
     def force(self) -> float:
-        """Total normal force [N]."""
+        """Total normal force of the pressure field [N]."""
         return float(np.sum(self.area * self.pressure))
 
     @property
@@ -55,10 +55,12 @@ class ContactField:
 
 
 NodeIndices = NDArray[np.intp]
+"""Array of node indices."""
 
 LENGTH_UNITS = unit_sizes("m", "mm", "um")
+"""Allowed units of length in files: {unit: size in SI units}."""
 PRESSURE_UNITS = unit_sizes("Pa", "kPa", "MPa", "GPa")
-"""Allowed units of length and pressure in files: {unit: size in SI units}."""
+"""Allowed units of pressure in files: {unit: size in SI units}."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +100,7 @@ COLUMN_UNITS: Mapping[str, UnitSizes] = {
     "area": unit_sizes(*(f"{unit}2" for unit in LENGTH_UNITS)),
     "pressure": PRESSURE_UNITS,
 }
+"""Columns of a CSV file with a nodal result: {name: {allowed unit: its size in SI units}}."""
 
 
 def read_csv(path: Path) -> NodalResult:
@@ -115,7 +118,7 @@ def read_csv(path: Path) -> NodalResult:
 
 
 def csv_text(contact_field: ContactField) -> str:
-    """Text of a CSV file with a field in SI units; `read_csv` reads the same numbers to the last bit."""
+    """Text of a CSV file with a pressure field in SI units; `read_csv` reads the same bits."""
     heads = [(name, next(iter(units))) for name, units in COLUMN_UNITS.items()]
     return columns.format_table(
         heads, [*contact_field.position.T, contact_field.area, contact_field.pressure]

@@ -13,6 +13,7 @@ from .contact_surface import OPEN_NODE_OPTIONS, ContactPlane, ContactSurface, ex
 from .nodal_result import LENGTH_UNITS, PRESSURE_UNITS, ContactField, NodalResult
 
 FIELD_FORMATS = ("csv", "mesh", "ansys", "abaqus", "frd")
+"""Formats of files with a pressure field."""
 FORMAT_BY_SUFFIX = {
     ".csv": "csv",
     ".frd": "frd",
@@ -24,7 +25,7 @@ FORMAT_BY_SUFFIX = {
 }
 """Format by the suffix of a file; files with other suffixes are meshes."""
 LISTING_READERS = {"ansys": ansys.read_ansys, "abaqus": abaqus.read_abaqus}
-"""Readers of formats that may need several files for one result."""
+"""Functions that read text listings of a solver, by format: one result may need several files."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -137,7 +138,7 @@ class FieldReader:
 
 
 def _check_no_open_nodes(contact_surface: ContactSurface) -> None:
-    """Raise ValueError if a node has no pressure."""
+    """Raise ValueError if a node of the contact surface has no pressure, since `open_nodes` is `refuse`."""
     open_nodes = np.flatnonzero(contact_surface.pressure == 0.0)
     if open_nodes.size:
         raise InputRefusal(

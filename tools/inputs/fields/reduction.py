@@ -38,7 +38,7 @@ from .sums import (
 )
 
 GROUPS_PER_SUM = 2
-"""Number of groups of nodes over number of independent sums [1]."""
+"""Number of node groups in one step of the recombination, over the number of independent sums [1]."""
 
 
 def recombine_weights(
@@ -74,13 +74,13 @@ TARGET_DEVIATION_RATIO, ACCEPTED_DEVIATION_RATIO, ADDED_CASE_DEVIATION_RATIO = 0
 """Deviations over the tolerance [1]: goal in the load cases of the selection; limit in the test load cases
 (the margin is for untested ones); deviation from which a test load case is added to the selection."""
 ROUNDING_BITS = 25
-"""Number of bits to which nodes are rounded for the selection: 3e-8, less than the goal."""
+"""Number of bits to which nodes are rounded for the selection [1]: 3e-8, less than the tolerance."""
 MIN_PIVOT_RATIO = 7e-9
-"""Smallest pivot of an independent sum over the largest pivot [1]; sums below it are dependent."""
+"""Smallest pivot of an independent sum over the largest pivot [1]; sums with smaller pivots are dependent."""
 SUM_COUNT_FACTOR = 0.93
-"""Factor [1] on the number of kept sums, and so of points, from one attempt to the next."""
+"""Number of kept sums, and so of points, in one attempt over that in the attempt before [1]."""
 INITIAL_RANDOM_LOAD_CASES = 100
-"""Number of quasi-random load cases in the selection from the start."""
+"""Number of quasi-random load cases in the first selection [1]."""
 SKETCH_ROWS = 600
 """Number of random combinations of the sample nodes (Halko, Martinsson and Tropp 2011); more than the number
 of kept sums."""
@@ -93,6 +93,7 @@ SAMPLE_NODE_COUNT = 3000
 TEST_LOAD_RANGE, MAX_TEST_EVALUATIONS = (60, 300), 3e6
 """Smallest and largest number of test load cases per round; largest number of test load cases times nodes."""
 MAX_SELECTION_ROUNDS = 8
+"""Largest number of rounds that select points, test them and add load cases [1]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,7 +127,7 @@ class Reduction:
 
     @property
     def node_count(self) -> int:
-        """Number of nodes of the field."""
+        """Number of nodes of the unreduced field."""
         return int(self.full_distribution.area_share.size)
 
 
@@ -228,7 +229,9 @@ def _deviation_above_tested_moments(
     reduced_points: PressureDistribution,
     moment_ratio_limit: float,
 ) -> float:
-    """Largest deviation [1] of the sums at moments up to the one at which a row of bolts loses its force.
+    """Largest deviation [1] of the sums of reduced points at moments above the tested ones.
+
+    The moments go up to the one at which a row of bolts loses its force.
 
     moment_ratio_limit : smallest of these moments over the largest one [1]
     """
@@ -276,7 +279,7 @@ class _SumSystem:
         sample_distribution: PressureDistribution,
         load_case_sums: LoadCaseSums,
     ) -> "_SumSystem":
-        """System of the sums of `evaluate_equilibrium_functions`, and of the sums in initial load cases."""
+        """System of sums for area, force and moments, and of the sums in initial load cases."""
         scale = np.maximum(
             np.max(np.abs(evaluate_equilibrium_functions(rounded_distribution)), axis=0), np.finfo(float).tiny
         )
@@ -395,7 +398,7 @@ class _SumSystem:
         return nodes, share[nodes]
 
     def _sum_over_groups(self, function_indices: NodeIndices) -> Array:
-        """Sums (g, k) of k selected functions over g groups of nodes."""
+        """Sums (g, k) of k selected functions over each of g groups of nodes."""
         share, count = self.rounded_distribution.area_share[:, None], self.equilibrium_scale.size
         is_balance = function_indices < count
         load, function = np.divmod(function_indices[~is_balance] - count, 9)

@@ -24,6 +24,7 @@ MAX_OPENED_SHARE = 0.001
 MAX_COMPRESSION_RATIO = 0.03
 """Largest compression of the joint over the motion that opens it fully [1]."""
 RANDOM_SEED = 1
+"""Seed of the quasi-random load cases."""
 
 
 class LoadCase(NamedTuple):
@@ -94,6 +95,7 @@ _CUBIC_ROOT_PRESSURE_RATIO = 1e-2
 """Pressure over the pressure of complete closure [1], below which the table is interpolated in the cubic root
 of the pressure."""
 _TABLE_REFINEMENT_FRACTIONS = np.linspace(0.0, 1.0, 33)[:-1]
+"""Relative positions in a segment of the pressure curve [1] that become rows of the table."""
 _VALUES_PER_BLOCK = 1 << 15
 """Number of function values in one block of the computation."""
 MAX_NODE_GROUPS = 4096
@@ -102,7 +104,9 @@ MAX_NODE_GROUPS = 4096
 
 @dataclass(frozen=True, slots=True)
 class LoadCaseSums:
-    """The 9 sums of a field in m load cases, relative to their scale.
+    """Sums of the 9 functions of `SumFunctions` over a pressure field, in m load cases.
+
+    They are relative to their scale.
 
     load_cases : (m) load cases
     opening    : (m) [m] normal motion
@@ -291,7 +295,7 @@ class SumFunctions:
         return out
 
     def sum_deviations(self, reduced_points: PressureDistribution, load_case_sums: LoadCaseSums) -> Array:
-        """Largest deviation (m) [1] of the sums of reduced points in each load case."""
+        """Largest deviation (m) [1] in each load case: sums of reduced points minus those of all nodes."""
         approach = (
             self._approach_at_pressure(self._preload_pressure(reduced_points, load_case_sums.load_cases))
             - load_case_sums.opening[:, None]
@@ -353,7 +357,7 @@ def _compute_position_factors(normalised_pressure: PressureDistribution) -> Arra
 
 
 def _sum_scales(sums: Array, radius_x: float, radius_y: float) -> Array:
-    """Sizes (m, 9) to which deviations of the 9 sums are related, in m load cases.
+    """Scales (m, 9) to which deviations of the 9 sums are relative, in m load cases.
 
     sums               : (m, 9)
     radius_x, radius_y : [m] radii of gyration of the contact

@@ -25,22 +25,22 @@ MIN_SHARE, MAX_SHARE = 1e-3, 0.38
 """Smallest and largest area share of the section [1] that was compared with boundary elements: pressures of
 0.0003 to 0.1 E* h' on Gaussian heights."""
 TYPICAL_SHARE = 0.03
-"""Area share of the section [1] at which the tail is compared with Gaussian heights."""
+"""Area share of the section [1] at which the upper tail of the heights is compared with Gaussian heights."""
 MAX_GAUSSIAN_RATIO = 1.3
-"""Largest ratio [1] of h and the height of the tail, either way, of heights that count as Gaussian."""
+"""Largest ratio of the rms height and the height of the tail [1], either way, of Gaussian heights."""
 SCAN_PARTS = 4
-"""Number of parts of a scan that must agree that its heights are not Gaussian: few hills differ by chance."""
+"""Number of parts of a scan [1] that must all have non-Gaussian heights: few hills differ by chance."""
 MIN_SKEWNESS = 1e-3
 """Skewness [1] below which heights are Gaussian."""
 TABLE_FACTOR_RANGE = (1.0 / 1.5, 1.5)
-"""Range of the stiffness of single surfaces over the law [1]."""
+"""Smallest and largest stiffness of single surfaces, over that of the law [1]."""
 RANDOM_PAIRS = 2**18
-"""Number of random pairs of points of two surfaces [1]."""
+"""Number of random pairs of points from two surfaces, for the heights of their gap [1]."""
 
 
 @dataclass(frozen=True, slots=True)
 class HeightSample:
-    """Points of a surface, or of the gap of two surfaces.
+    """Heights and slopes at points of a surface, or of the gap of two surfaces.
 
     heights        : (n) [m], mean 0
     squared_slopes : (n) [1] squared gradient of the isotropic surface
@@ -55,7 +55,7 @@ class HeightSample:
         return float(np.mean(z**order) / np.mean(z**2) ** (0.5 * order))
 
     def split(self, count: int) -> list["HeightSample"]:
-        """Parts of equal size, in the order of the points of the scan."""
+        """Samples of equal size, in the order of the points of the scan."""
         pairs = zip(
             np.array_split(self.heights, count), np.array_split(self.squared_slopes, count), strict=True
         )
@@ -63,12 +63,12 @@ class HeightSample:
 
 
 def tail_ratio(sample: HeightSample) -> float:
-    """Height of the tail of the heights over their rms height [1]; 1 for Gaussian heights."""
+    """Height of the upper tail of the heights over their rms height [1]; 1 for Gaussian heights."""
     return BearingCurve.of_sample(sample).tail_height / float(sample.heights.std())
 
 
 def add_surfaces(first: HeightSample, second: HeightSample) -> HeightSample:
-    """Sample of the gap of two statistically independent surfaces, from random pairs of their points."""
+    """Heights of the gap of two statistically independent surfaces, from random pairs of their points."""
     rng = np.random.default_rng(0)
     i, j = (rng.integers(sample.heights.size, size=RANDOM_PAIRS) for sample in (first, second))
     return HeightSample(
@@ -85,7 +85,7 @@ def gaussian_mean_excess(share: Array) -> Array:
 
 
 def skewed_tail_ratio(skewness: float) -> float:
-    """Height of the tail over the rms height [1] of lognormal heights with a skewness; Gaussian: 1.
+    """Height of the upper tail over the rms height [1] of lognormal heights with a skewness; Gaussian: 1.
 
     With a negative skewness the heights are mirrored: pits below a flat top.
     """
@@ -96,6 +96,7 @@ def skewed_tail_ratio(skewness: float) -> float:
         return 1.0
 
     def excess_skewness(s: float) -> float:
+        """Skewness of lognormal heights with the shape parameter s, minus the given skewness."""
         return float((np.exp(s**2) + 2.0) * np.sqrt(np.expm1(s**2)) - abs(skewness))
 
     s = brentq(excess_skewness, 1e-6, 2.0) * np.sign(skewness)

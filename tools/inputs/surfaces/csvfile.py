@@ -35,10 +35,13 @@ from . import heights as grid
 from .heights import ArealMap, Heights, Profile
 
 SURFACE_FILE_KIND = FileKind("surface", (".csv",))
+"""CSV files with heights of a surface."""
 LENGTH_UNITS = unit_sizes("m", "mm", "um", "µm", "μm", "nm")
 """Allowed length units: {unit: size in metres}."""
 LAYOUT_COLUMNS = {"profile": ("x", "z"), "points": ("x", "y", "z"), "grid": ("z",)}
+"""{layout of a file: names of its columns}."""
 _DECLARATION_PATTERN = re.compile(r"#\s*(profile|points|grid)\s*:(.*)")
+"""Pattern of the first line, which declares the layout."""
 UNIT_LIST = ", ".join(filter(str.isascii, LENGTH_UNITS))
 """List of the allowed length units, for messages."""
 
@@ -85,7 +88,7 @@ def read_declared_file(
 
 
 def _mark_missing_points(table: Array, mark_missing: Callable[[Array], Array]) -> Array:
-    """Columns (n, 2 or 3) with NaN in the last one, the heights, at the missing points."""
+    """Columns (n, 2 or 3) of positions and heights, with NaN as height at the missing points."""
     return np.column_stack([table[:, :-1], mark_missing(table[:, -1])])
 
 
@@ -162,7 +165,7 @@ def _parse_spacing(path: Path, text: str, name: str) -> tuple[float, str]:
 
 
 def read_table(path: Path, header_lines: int = 0) -> Array:
-    """Read the numbers of a file below its header lines; empty cells are NaN.
+    """Read the numbers of a text file below its header lines; empty cells are NaN.
 
     The delimiter is a semicolon, tab, comma or blank; # begins a comment.
     """
@@ -182,7 +185,10 @@ def read_table(path: Path, header_lines: int = 0) -> Array:
 
 
 def _parse_numbers(path: Path, line: int, row: Sequence[str]) -> Array:
-    """Parse the cells of one row; empty cells are NaN. Raises ValueError for a cell that is not a number."""
+    """Parse the cells of one row of numbers; empty cells are NaN.
+
+    Raises ValueError for a cell that is no number.
+    """
     values = [parse_number(cell) if cell.strip() else np.nan for cell in row]
     if None in values:
         cell = row[values.index(None)].strip()

@@ -32,16 +32,16 @@ MAX_LAW_DEVIATION = 0.25
 MIN_RANGE_DECADES = 0.5
 """Shortest range [decades] that the search considers."""
 COVARIANCE_CORRECTION_FACTOR = 1.15
-"""Factor on the covariance of the result, from simulation (studies/surfaces_explanation.py: coverage)."""
+"""Factor on the covariance of H and log_power [1], from simulation (studies/surfaces_explanation.py)."""
 OFFSET_PRIOR_DEVIATION = 2.0
-"""Prior standard deviation of the offset [1], relative to the value at the shortest scale."""
+"""Prior standard deviation of the constant added to the law, over the value at the shortest scale [1]."""
 MAX_LOG_VARIANCE = 0.3
-"""Largest variance of ln(value) [1]; values with a larger one are left out."""
+"""Largest variance of ln(value) of a scale [1]; scales with a larger variance are left out of the fit."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SelfAffineLaw:
-    """Self-affine law fitted to a series over scale.
+    """Self-affine law (power law of height variance) fitted to a structure function or spectrum.
 
     H           : Hurst exponent [1]
     log_power   : ln(Phi) at the wavelength `reference_wavelength`, Phi in m2
@@ -93,7 +93,7 @@ class SelfAffineLaw:
 def fit_law(
     series: ScaleSeries, min_scale: float | None = None, max_scale: float | None = None
 ) -> SelfAffineLaw:
-    """Fit the law over a range of scales [m], or over the longest self-affine range.
+    """Fit the self-affine law over a range of scales [m], or over the longest self-affine range.
 
     Raises ValueError if the given range has fewer than four values.
     """
@@ -112,7 +112,10 @@ def fit_law(
 
 
 def _search_range(series: ScaleSeries) -> SelfAffineLaw:
-    """Fit over the longest self-affine range; without one, over the range with least drift plus deviation."""
+    """Fit the self-affine law over the longest range in which it holds.
+
+    Without one, over the range with the least drift plus deviation.
+    """
     n = series.scale.size
     step = max(1, n // 10)
     starts, ends = range(0, n - 3, step), range(n, 3, -step)
@@ -228,7 +231,10 @@ def _excess_deviation(
 
 
 def _estimate_drift(log_scale: Array, residual: Array, statistical_covariance: Array) -> tuple[float, float]:
-    """Change of D over the range and its standard error, from an additional quadratic term in ln(scale)."""
+    """Change of D over the range of scales, and its standard error.
+
+    They come from an additional quadratic term in ln(scale).
+    """
     whiten = _whitening_matrix(statistical_covariance + MIN_LAW_DEVIATION**2 * _correlation_matrix(log_scale))
     t = log_scale - log_scale.mean()
     columns = [np.ones_like(t), t, t**2]

@@ -15,8 +15,9 @@ from .bearing_curve import HeightSample
 from .heights import FORM_NAMES, RELATIVE_ROUND_OFF, ArealMap, Heights
 
 Mask = NDArray[np.bool_]
+"""Boolean array: which points are selected."""
 SPIKE_RATIO = 8.0
-"""Deviation of a spike from the median of its neighbours over the standard deviation [1]."""
+"""Deviation of a spike from the median of its neighbours, over the standard deviation of all points [1]."""
 FILL_ITERATIONS = 50
 """Number of iterations of the harmonic filling: enough for gaps up to about ten points wide."""
 MAX_MISSING_SHARE = 0.2
@@ -25,7 +26,7 @@ MAX_MISSING_SHARE = 0.2
 
 @dataclass(frozen=True, slots=True)
 class Repair:
-    """Repair of a scan, for messages.
+    """Repair of a scan (spikes or gaps), for messages.
 
     name            : kind of repair
     repaired_points : number of repaired points
@@ -92,7 +93,7 @@ def remove_form(heights: Heights, form: str = "tilt") -> Heights:
 
 
 def _monomials(coordinates: list[Array], polynomial_order: int) -> list[Array]:
-    """Monomials up to an order in one or two coordinates."""
+    """Monomials up to an order in one or two coordinates, for the polynomial of the form."""
     terms = [np.ones_like(coordinates[0])]
     if polynomial_order >= 1:
         terms += coordinates
@@ -139,7 +140,7 @@ def _fill_harmonically(z: Array, missing_mask: Mask) -> Array:
 
 
 def _fill_nearest(z: Array, valid_mask: Mask) -> Array:
-    """Fill missing points with the height of the nearest valid point."""
+    """Fill missing points of a scan with the height of the nearest valid point."""
     if valid_mask.all():
         return z
     from scipy.ndimage import distance_transform_edt
@@ -179,7 +180,7 @@ MIN_WAVE_SPACINGS = 5.0
 """Shortest wavelength of the slope over the point spacing [1]. Shorter waves are noise or effects of the
 instrument (docs/surfaces_reference.md)."""
 MIN_WAVE_RATIO = 4.0
-"""Smallest ratio of the longest to the shortest wavelength [1]."""
+"""Smallest allowed ratio of the longest to the shortest wavelength of a scan [1]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -206,7 +207,7 @@ class ScanRoughness:
 
 
 def default_longest_wave(heights: Heights) -> float:
-    """Default of the longest wavelength [m]: the length of a profile, or the shorter side of a map."""
+    """Default of the longest wavelength [m] of a scan: length of a profile, or shorter side of a map."""
     return min(heights.lengths)
 
 

@@ -18,7 +18,7 @@ MIN_PROFILE_POINTS = 128
 MIN_AREAL_POINTS = 64
 """Smallest number of points along each side of an areal map."""
 RELATIVE_ROUND_OFF = 1e-9
-"""Height variation over the absolute height [1], below which it is round-off."""
+"""Variation of the heights over their absolute value [1], below which it is round-off."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,6 +47,7 @@ class Profile:
         return (self.z.size * self.dx,)
 
     def with_heights(self, z: Array) -> "Profile":
+        """Copy of the profile with other heights."""
         return replace(self, z=z)
 
 
@@ -79,10 +80,12 @@ class ArealMap:
         return self.z.shape[1] * self.dx, self.z.shape[0] * self.dy
 
     def with_heights(self, z: Array) -> "ArealMap":
+        """Copy of the map with other heights."""
         return replace(self, z=z)
 
 
 Heights = Profile | ArealMap
+"""Heights of a scan: profile or areal map."""
 
 
 def _check_heights(name: str, z: Array, *spacings: float) -> None:
@@ -99,6 +102,7 @@ def _check_heights(name: str, z: Array, *spacings: float) -> None:
 
 
 GridIndices = NDArray[np.int64]
+"""Array of indices of grid points."""
 
 GRID_TOLERANCE = 0.05
 """Largest deviation of a position from a regular grid over the grid spacing [1]."""
@@ -148,12 +152,14 @@ def fit_grid(
 
 
 def _grid_distance(positions: Array, index: GridIndices, step: float) -> Array:
-    """Distance of each position from its grid point."""
+    """Distance of each position from its point of a regular grid."""
     return np.asarray(np.abs(positions - index * step))
 
 
 def last_digit_unit(positions: Array) -> Array:
-    """Unit of the last digit of each position (n,), for a fixed number of decimals or of significant digits.
+    """Unit of the last printed digit of each position (n,).
+
+    The positions have a fixed number of decimals or of significant digits.
 
     0 if the positions have more digits than MAX_LAST_DIGIT_RATIO.
     """
@@ -165,6 +171,8 @@ def last_digit_unit(positions: Array) -> Array:
 
 def _common_power_of_ten(numbers: Array) -> float:
     """Largest power of ten, at most 1, of which all numbers are multiples.
+
+    It is the unit of their last digit.
 
     0 if the largest number is more than MAX_LAST_DIGIT_RATIO times that power.
     """
@@ -202,6 +210,7 @@ FORMAT_SIGNATURES = (
 )
 """Signatures (first bytes) of the known formats; that of Wyko OPD begins at the third byte."""
 _NUMBER_PATTERN = re.compile(rb"\d+")
+"""Pattern of a number in the bytes of a file."""
 
 
 def check_surface_file(path: Path) -> None:
@@ -230,5 +239,5 @@ def check_surface_file(path: Path) -> None:
 
 
 def has_signature(first_bytes: bytes) -> bool:
-    """Whether the first bytes of a file are the signature of a known format."""
+    """Whether the first bytes of a file are the signature of a known format of instruments."""
     return first_bytes.startswith(FORMAT_SIGNATURES) or first_bytes[2:].startswith(b"Directory")

@@ -29,6 +29,7 @@ from .spectrum import ScaleSeries, power_spectrum, structure_function
 CONFIDENCE_LEVEL = 0.95
 """Level of the confidence intervals [1]."""
 MONTE_CARLO_SAMPLES = 4000
+"""Number of random samples of the fitted law for confidence intervals [1]."""
 
 
 def identify(
@@ -39,7 +40,7 @@ def identify(
     side: str | None = None,
     keep_spikes: bool = False,
 ) -> Identification:
-    """Identify one surface, or the equivalent surface of two.
+    """Identify D, G and roughness of one surface, or of the equivalent surface of two.
 
     The equivalent surface of two independent surfaces has the difference of their heights. Its structure
     function is the sum of their structure functions, and its spectrum the sum of their spectra.
@@ -177,6 +178,9 @@ def _fractal_result(series: ScaleSeries, law: SelfAffineLaw) -> FractalResult:
 
 
 def _confidence_interval(values: Array) -> tuple[float, float, float]:
-    """Estimate and confidence interval from values: the first is the estimate, the others are samples."""
+    """Estimate of a quantity with its confidence interval.
+
+    values : the first is the estimate, the others are random samples of it
+    """
     low, high = np.quantile(values[1:], [0.5 - 0.5 * CONFIDENCE_LEVEL, 0.5 + 0.5 * CONFIDENCE_LEVEL])
     return float(values[0]), float(low), float(high)

@@ -48,7 +48,7 @@ def _profile_direction(identification: Identification, surface: RoughSurface) ->
 
 
 def _dimension_and_roughness(result: FractalResult, surface: RoughSurface) -> tuple[Estimate, Estimate]:
-    """D and G that the joint needs: of the surface or of the profile."""
+    """Fractal parameters D and G of a result, as the joint needs them: of the surface or of the profile."""
     if surface.is_areal:
         return result.areal.D_s, result.areal.G_s
     return result.profile.D, result.profile.G
@@ -65,7 +65,7 @@ def with_surface(
     method: str | None = None,
     set_undetermined: bool = False,
 ) -> ParameterFile:
-    """Set the parameters of a file that follow from a measured surface, with their sources.
+    """Set the parameters of a parameter file that follow from a measured surface, with their sources.
 
     These are the rms heights of the measured sides. With the law `roughness` also slope, longest wave and, if
     it is determined, the Hurst exponent. With fractal laws also D and G, if they are determined. With the law
@@ -138,7 +138,7 @@ def _describe_files(identification: Identification) -> str:
 
 
 def _describe_fit(identification: Identification, result: FractalResult) -> str:
-    """Text for a source: files, method and range of scales of a result."""
+    """Text for the source of a parameter: files, method and range of scales of a result."""
     methods = {"structure": "structure function, lags", "psd": "power spectral density, wavelengths"}
     return (
         f"identified from {_describe_files(identification)} by {methods[result.method]} "

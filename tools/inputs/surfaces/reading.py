@@ -129,7 +129,7 @@ def _check_size(heights: Heights, unit: str) -> None:
 
 
 def _missing_unit_error(path: Path) -> InputRefusal:
-    """Error for a file without a length unit."""
+    """Error for a surface file that states no length unit."""
     return InputRefusal(f"{path}: states no length unit; state it, one of {csvfile.UNIT_LIST}", "unit")
 
 

@@ -27,7 +27,7 @@ TEXTURE_THRESHOLD = 0.3
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """Estimated value with the limits of its confidence interval."""
+    """Estimated value of a surface parameter, with the limits of its confidence interval."""
 
     value: float
     low: float
@@ -79,7 +79,9 @@ class ArealFractal:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FractalResult:
-    """Result of one method in one direction ("profile", "x", "y" or "areal").
+    """Fractal parameters by one method (structure function or spectrum) in one direction.
+
+    The direction is "profile", "x", "y" or "areal".
 
     series  : structure function or spectrum over scale
     fit     : self-affine law fitted to the series
@@ -97,7 +99,7 @@ class FractalResult:
 
 @dataclass(frozen=True, slots=True)
 class Identification:
-    """Identification of one surface or of the equivalent surface of two.
+    """Identified parameters of one surface, or of the equivalent surface of two.
 
     file_names  : names of the files
     results     : results of all methods and directions
@@ -139,12 +141,12 @@ class Identification:
 
     @property
     def tail_ratio(self) -> float:
-        """Height of the tail of the heights over the rms height of the gap [1]; 1 for Gaussian heights."""
+        """Height of the upper tail of the heights over their rms height [1]; 1 for Gaussian heights."""
         return tail_ratio(self.gap)
 
     @property
     def is_gaussian(self) -> bool:
-        """Whether the tail is about as high as that of Gaussian heights, or parts of the scan disagree."""
+        """Whether the tail is as high as that of Gaussian heights, or parts of the scan disagree."""
         ratios = [self.tail_ratio, *map(tail_ratio, self.gap_parts)]
         return not (max(ratios) < 1.0 / MAX_GAUSSIAN_RATIO or min(ratios) > MAX_GAUSSIAN_RATIO)
 
@@ -155,7 +157,7 @@ class Identification:
 
     @property
     def longest_wave(self) -> float:
-        """Longest wavelength [m] of h and slope."""
+        """Longest wavelength [m] that contributes to the combined rms height h and slope."""
         return self.scans[0].longest_wave
 
     def select_best_result(self, direction: str | None = None, method: str | None = None) -> FractalResult:
@@ -197,7 +199,7 @@ class Identification:
 
 
 def mean_line_shares(heights: ArealMap) -> tuple[float, float]:
-    """Mean square of the average line over that of the single lines [1], for lines along x and along y.
+    """Mean square of the average line of a map over that of its single lines [1], along x and along y.
 
     The squares are those of second differences. Near 0: isotropic surface. 1: all lines are equal.
     """
@@ -253,6 +255,7 @@ def list_warnings(results: Sequence[FractalResult], is_textured: bool) -> list[s
 
 
 DIRECTION_COLOURS = {"profile": plots.BLUE, "areal": plots.BLUE, "x": plots.RED, "y": plots.GREEN}
+"""{direction of a result: colour in the plot}."""
 
 
 def draw_identification(identification: Identification, path: str | Path) -> None:

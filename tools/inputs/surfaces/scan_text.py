@@ -29,14 +29,14 @@ MAX_HEADER_BYTES = 2**18
 HEIGHT_COLUMN_NAMES = ("z", "height", "altitude", "depth", "elevation")
 """Names of a column of heights in a table with more columns, in lower case."""
 MISSING_VALUE_RATIO = 1000.0
-"""Magnitude of a repeated height over the range of all other heights [1], above which it marks missing
-points."""
+"""Magnitude of a repeated height over the range of the other heights [1]: above, it marks missing points."""
 _SPACING_PATTERN = re.compile(r"\s*([-+]?[\d.,]+(?:[eE][-+]?\d+)?)\s*([^\W\d_]+)\s*")
+"""Pattern of a spacing with a unit."""
 
 
 @dataclass(frozen=True, slots=True)
 class ScanOptions:
-    """What the user states about a file that does not state it.
+    """Units, spacing and missing value that the user states about a scan file without them.
 
     unit_x, unit_z : length unit of x and y, and of z
     spacing        : spacing of the points along x and y [m]
@@ -147,6 +147,7 @@ def _read_header(path: Path, header_lines: int) -> dict[str, list[str]]:
 
 
 def _matrix_spacing(path: Path, header: Mapping[str, list[str]], options: ScanOptions) -> tuple[float, float]:
+    """Spacing [m] along x and y of a matrix of heights, from its header or from the options."""
     stated = header.get("xy calibration")
     if stated is None:
         return options.require_spacing(path)
@@ -177,7 +178,7 @@ def _check_missing_value(path: Path, z: Array) -> None:
 
 
 def read_height_list(path: Path, options: ScanOptions) -> tuple[Heights, str]:
-    """Read one column of heights as a profile; return it and the length unit of the spacing."""
+    """Read a file with one column of heights as a profile; return it and the length unit of the spacing."""
     dx, _ = options.require_spacing(path)
     z = options.mark_missing(read_table(path)[:, 0])
     _check_missing_value(path, z)
@@ -185,7 +186,7 @@ def read_height_list(path: Path, options: ScanOptions) -> tuple[Heights, str]:
 
 
 def find_wide_table(path: Path) -> bool:
-    """Whether a file has a line of more than three titles, with numbers below."""
+    """Whether a scan file has a line of more than three column titles, with numbers below."""
     try:
         lines = [line for _, line in read_numbered_lines(path, 2)]
     except ValueError:

@@ -23,9 +23,9 @@ depends on the short waves (docs/validity_stiffness.md)."""
 MIN_SIDE_POINTS = 2 * MIN_AREAL_POINTS
 """Smallest number of points along a side, for the sub-areas."""
 MAX_ASPECT_RATIO = 4
-"""Largest ratio of the sides that is solved [1]."""
+"""Largest ratio of the long to the short side of a scan that is solved [1]."""
 SUB_AREAS = 2
-"""Number of sub-areas along a side, whose scatter gives the range."""
+"""Number of sub-areas along each side of a scan [1], whose scatter gives the range of the stiffness."""
 MIN_CONTACT_POINTS = 16
 """Smallest number of points in contact [1] whose stiffness counts: fewer are one summit."""
 LOADS = (3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1)
@@ -33,7 +33,9 @@ LOADS = (3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1)
 FORCE_TOLERANCE, GAP_TOLERANCE = 1e-5, 1e-3
 """Tolerances of the solver: force of a point over the mean force, gap over the rms height [1]."""
 STIFFNESS_TOLERANCE = 1e-4
+"""Relative tolerance of the iterative solution for the stiffness [1]."""
 MAX_ITERATIONS = 1000
+"""Largest number of iterations of a solution [1]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +76,7 @@ def gap_of_scans(scans: Sequence[ArealMap]) -> ArealMap:
 
 
 def coarsen(heights: ArealMap) -> ArealMap:
-    """Mean heights of square blocks of points, so that the grid has about MAX_SIDE_POINTS^2 points.
+    """Coarser grid of heights: means of square blocks of points, about MAX_SIDE_POINTS^2 points in all.
 
     A long scan is cut to MAX_ASPECT_RATIO. Raises ValueError for fewer than MIN_SIDE_POINTS along a side.
     """
@@ -91,7 +93,7 @@ def coarsen(heights: ArealMap) -> ArealMap:
 
 
 def solve_stiffness(gap: ArealMap, modulus: float, hardness: float) -> SolvedStiffness:
-    """Stiffness of a gap without form over a range of pressures, and its scatter over sub-areas.
+    """Contact stiffness of a gap without form over a range of pressures, and its scatter over sub-areas.
 
     modulus, hardness : contact modulus E* and hardness of the softer body [Pa]
 
@@ -125,7 +127,7 @@ def solve_stiffness(gap: ArealMap, modulus: float, hardness: float) -> SolvedSti
 
 
 def _sub_areas(grid: ArealMap) -> Iterator[ArealMap]:
-    """Equal parts of a grid, each without its tilt."""
+    """Equal parts of a grid of heights, each without its tilt."""
     rows, columns = (n // SUB_AREAS for n in grid.z.shape)
     for i in range(SUB_AREAS):
         for j in range(SUB_AREAS):
@@ -135,7 +137,7 @@ def _sub_areas(grid: ArealMap) -> Iterator[ArealMap]:
 
 
 def _rms_slope(grid: ArealMap) -> float:
-    """Rms slope [1] of a grid by differences of neighbours."""
+    """Rms slope [1] of a grid of heights, by differences of neighbours."""
     along_y, along_x = (np.diff(grid.z, axis=axis) for axis in (0, 1))
     return float(np.sqrt(np.mean((along_x / grid.dx) ** 2) + np.mean((along_y / grid.dy) ** 2)))
 
@@ -143,7 +145,11 @@ def _rms_slope(grid: ArealMap) -> float:
 def _press(
     grid: ArealMap, pressures: Array, modulus: float, hardness: float, steps: Iterator[int]
 ) -> Iterator[tuple[float, float, int]]:
-    """Per pressure: stiffness per area [Pa/m], share of the contact at the hardness, points in contact."""
+    """Press a grid of heights on a half-space, at several pressures, by boundary elements.
+
+    Returns for each pressure: stiffness per area [Pa/m], share of the contact at the hardness, points in
+    contact.
+    """
     try:
         from ContactMechanics import PeriodicFFTElasticHalfSpace
         from ContactMechanics.Optimization import constrained_conjugate_gradients
@@ -188,6 +194,7 @@ def _bonded_stiffness(half_space: Any, contact_mask: Mask) -> float:
     field = np.zeros(contact_mask.shape)
 
     def displacement(force: Array) -> Array:
+        """Displacement of the half-space under the forces on the points in contact."""
         field[contact_mask] = -force  # forces of the package act on the half-space
         return np.asarray(half_space.evaluate_disp(field))[contact_mask]
 

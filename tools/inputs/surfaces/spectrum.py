@@ -18,6 +18,7 @@ from ..fractal import second_difference_ratio, structure_constant
 from .heights import ArealMap, Heights
 
 SERIES_METHODS = ("structure", "psd")
+"""Methods to describe heights over scale: structure function, power spectral density."""
 SCAN_SIDES = ("1", "2", "both")
 """Side of the contact that a single scan represents: 1 or 2 (the other side is smooth), or both (alike)."""
 MIN_SERIES_VALUE = 1e-200
@@ -81,7 +82,10 @@ def structure_function(heights: Heights, direction: str) -> ScaleSeries:
 
 
 def _mean_square_differences(z: Array) -> tuple[Array, Array, Array]:
-    """Lags in points, and V and S [m2] at these lags, averaged over the rows of z."""
+    """Mean square differences of heights: lags in points, and V and S [m2] at these lags.
+
+    They are averaged over the rows of z.
+    """
     lags = np.unique(np.round(np.exp(np.arange(np.log(2.0), np.log(z.shape[1] // 8), 0.08))).astype(int))
     value, raw = np.empty(lags.size), np.empty(lags.size)
     for i, lag in enumerate(lags):
@@ -94,7 +98,7 @@ def _mean_square_differences(z: Array) -> tuple[Array, Array, Array]:
 def _smooth_structure(
     direction: str, lag: Array, value: Array, structure_values: Array, covariance: Callable[[float], Array]
 ) -> ScaleSeries:
-    """Series of a structure function, smoothed over ln(lag) with the same kernel as the spectrum."""
+    """Structure function as a series, smoothed over ln(lag) with the same Gaussian kernel as the spectrum."""
     x = np.log(lag)
     scale = np.exp(np.arange(x[0] + SMOOTHING_KERNEL_WIDTH, x[-1], 0.2))
     weight = np.exp(-0.5 * ((np.log(scale)[:, None] - x) / SMOOTHING_KERNEL_WIDTH) ** 2) * np.gradient(x)
@@ -128,7 +132,7 @@ def _mean_square(values: Array) -> float:
 
 
 def structure_power_law(scale: Array, H: float) -> Array:
-    """V [m2] at lags [m] for Phi(frequency) = frequency^(-2H)."""
+    """Structure function V [m2] at lags [m], for the spectrum Phi(frequency) = frequency^(-2H)."""
     return np.asarray(2.0 * structure_constant(H) * second_difference_ratio(H) * scale ** (2.0 * H))
 
 
@@ -146,6 +150,7 @@ def _line_covariance(scale: Array, length: float) -> Callable[[float], Array]:
     response = _wave_weights(scale, frequency)
 
     def covariance(H: float) -> Array:
+        """Covariance of ln(V) for the Hurst exponent H."""
         weight = response * frequency ** (-1.0 - 2.0 * H)
         weight = weight / weight.sum(axis=1, keepdims=True)
         return _multiply_transposed(weight, weight)
@@ -163,6 +168,7 @@ def _areal_covariance(scale: Array, lengths: tuple[float, ...]) -> Callable[[flo
     square = fx[None, :] ** 2 + fy[:, None] ** 2
 
     def covariance(H: float) -> Array:
+        """Covariance of ln(V) for the Hurst exponent H."""
         power = square ** (-1.0 - H)  # a quarter of the plane; two quarters are independent
         squared = power**2
         cross = _multiply_transposed(_multiply_transposed(wx, squared), wy)
@@ -198,7 +204,7 @@ def _average_directions(heights: ArealMap) -> ScaleSeries:
 
 
 HANN_CORRELATED_MODES = 35.0 / 18.0
-"""Number of neighbouring Fourier modes that count as one with a Hann window, per direction [1]."""
+"""Number of neighbouring Fourier modes per direction that count as one with a Hann window [1]."""
 
 
 def power_spectrum(heights: Heights, direction: str) -> ScaleSeries:
@@ -229,9 +235,11 @@ def power_spectrum(heights: Heights, direction: str) -> ScaleSeries:
     areal = direction == "areal"
 
     def expected_power(H: float) -> Array:
+        """Expected height variances of the Fourier modes for the spectrum frequency^(-2H)."""
         return np.asarray(share * f ** (-2.0 * H) * _hann_window_factor(f * length, H, areal))
 
     def covariance(H: float) -> Array:
+        """Covariance of ln(value) of the smoothed spectrum."""
         weight = kernel * expected_power(H)
         weight = weight / weight.sum(axis=1, keepdims=True)
         return np.asarray((weight * (per_mode / count)) @ weight.T)
@@ -270,7 +278,10 @@ def _hann_window(n: int) -> Array:
 
 
 def _line_modes(z: Array, spacing: float) -> tuple[Array, Array, Array]:
-    """Frequency f [1/m], variance [m2] and df/f [1] of the Fourier modes with f > 0, averaged over lines."""
+    """Fourier modes of lines of heights: frequency f > 0 [1/m], variance [m2] and df/f [1].
+
+    They are averaged over the lines.
+    """
     n = z.shape[1]
     window = _hann_window(n)
     level = (z @ window) / window.sum()

@@ -22,7 +22,7 @@ INTERFACE_TABLE_FILE = FileKind("table of an interface", (".csv",))
 
 @dataclass(frozen=True, slots=True)
 class InterfacePoints:
-    """Normal stiffness per area over pressure, with its range.
+    """Points of the interface law `table`: normal stiffness per area over pressure, with its range.
 
     pressure, stiffness : (n) [Pa], [Pa/m]
     ratio               : K_T/K_N of elastic contact spots [1]
@@ -62,14 +62,14 @@ class MaterialPair:
     def from_sides(
         cls, sides: Sequence[ElasticConstants], hardness: float, names: Sequence[str]
     ) -> "MaterialPair":
-        """Pair of two bodies with the hardness of the softer one [Pa] and the names of the materials."""
+        """Material pair of two bodies, from the hardness of the softer one [Pa] and the material names."""
         modulus = float(contact_modulus(*sides))
         ratio = 4.0 * float(contact_shear_modulus(*sides)) / modulus
         return cls(modulus, ratio, hardness, " and ".join(dict.fromkeys(names)))
 
 
 def points_from_tail(curve: BearingCurve, materials: MaterialPair, files: str) -> InterfacePoints:
-    """Points of pressure over the decay length of the heights."""
+    """Points of the interface law `table` from the upper tail of the heights: pressure over decay length."""
     pressure, stiffness = curve.stiffness_table(materials.modulus)
     source = (
         f"upper tail of the heights of {files}: pressure over decay length, E* = {materials.modulus:.4g} Pa "
@@ -81,7 +81,7 @@ def points_from_tail(curve: BearingCurve, materials: MaterialPair, files: str) -
 def points_from_solution(
     scans: Sequence[ArealMap], both_sides: bool, materials: MaterialPair, files: str
 ) -> InterfacePoints:
-    """Points by boundary elements.
+    """Points of the interface law `table` from a solution by boundary elements.
 
     scans      : heights without form, of one side or of both
     both_sides : whether the single scan describes both sides: its gap is that to itself, turned
@@ -111,7 +111,7 @@ def has_table_law(joint: str) -> bool:
 
 
 def with_points(file: ParameterFile, points: InterfacePoints) -> ParameterFile:
-    """Copy of a parameter file of the law `table` with new points."""
+    """Copy of a parameter file of the law `table` with new points of the stiffness."""
     values = {
         "table.pressure": tuple(float(f"{p:.6g}") for p in points.pressure),
         "table.stiffness": tuple(float(f"{k:.6g}") for k in points.stiffness),

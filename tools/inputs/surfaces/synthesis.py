@@ -13,7 +13,7 @@ from .heights import ArealMap, Profile
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Waves(CheckedParameters):
-    """Waves and sampling of a Weierstrass-Mandelbrot function.
+    """Waves and sampling of a Weierstrass-Mandelbrot function (rough surface with given D and G).
 
     size   : longest wavelength and length of the sample L [m]
     points : number of points along the length
@@ -43,7 +43,7 @@ class Waves(CheckedParameters):
 
 
 def synthesize_isotropic(waves: Waves, D: float, G: float, direction_count: int, seed: int) -> ArealMap:
-    """Isotropic surface of Hu 2023, Eq. 1.
+    """Random isotropic Weierstrass-Mandelbrot surface (Hu 2023, Eq. 1).
 
     D      : fractal dimension of the surface [1], 2 < D < 3
     G      : fractal roughness [m]
@@ -67,7 +67,9 @@ def synthesize_isotropic(waves: Waves, D: float, G: float, direction_count: int,
 
 
 def profile_heights(waves: Waves, D: float, G: float, rng: np.random.Generator) -> Array:
-    """Heights (points,) [m] of a random profile: Hu 2023, Eq. 2, and Yu 2022, Eq. 2 (with x and L).
+    """Heights (points,) [m] of a random Weierstrass-Mandelbrot profile.
+
+    Hu 2023, Eq. 2, and Yu 2022, Eq. 2 (with x and L).
 
     D   : fractal dimension of the profile [1], 1 < D < 2
     G   : fractal roughness [m]
@@ -84,13 +86,13 @@ def profile_heights(waves: Waves, D: float, G: float, rng: np.random.Generator) 
 
 
 def synthesize_profile(waves: Waves, D: float, G: float, seed: int) -> Profile:
-    """Profile with random phases from a seed; D and G as in `profile_heights`."""
+    """Random Weierstrass-Mandelbrot profile from a seed; D and G as in `profile_heights`."""
     z = profile_heights(waves, D, G, np.random.default_rng(seed))
     return Profile(z=z, dx=waves.size / waves.points, name="synthetic profile")
 
 
 def synthesize_textured(waves: Waves, D: tuple[float, float], G: tuple[float, float], seed: int) -> ArealMap:
-    """Textured surface with two directions, Yu 2022, Eq. 3 (corrected): z(x, y) = z_1(x) + z_2(y).
+    """Random textured surface with two directions, Yu 2022, Eq. 3 (corrected): z(x, y) = z_1(x) + z_2(y).
 
     D, G : fractal dimension [1] and roughness [m] of the profiles along x and y
     """

@@ -11,3 +11,4 @@ TOOL_MODULES = JointToolModules(
     ringing="job",
     pressure="field",
 )
+"""Which module of this folder serves which tool."""

@@ -122,6 +122,7 @@ def springs_under_pressure(spring: BoltedJointSpring, node_pairs: "NodePairs") -
 
 
 def _check_area(spring: BoltedJointSpring, node_pairs: "NodePairs") -> None:
+    """Raise ValueError if the areas of node pairs do not add up to A_0 of the joint within AREA_TOLERANCE."""
     area, expected = float(node_pairs.area.sum()), float(spring.joint.A_0)
     if abs(area / expected - 1.0) > AREA_TOLERANCE:
         raise ValueError(
@@ -131,6 +132,7 @@ def _check_area(spring: BoltedJointSpring, node_pairs: "NodePairs") -> None:
 
 
 def _interface_totals(spring: BoltedJointSpring, preload: float, moment: float) -> dict[str, float]:
+    """Stiffness [N/m] and damping [N.s/m] of the whole interface: {name: value}."""
     rest = (0.0, 0.0, 0.0)
     state = spring.evaluate(preload, moment, rest, rest)
     sums = {name: float(state[name]) for name in TOTAL_STIFFNESS_AND_DAMPING_NAMES}
@@ -184,11 +186,11 @@ def _distribute_to_nodes(
 
 
 MAX_CONTACT_FORCE_RATIO = 10.0
-"""Total contact force at the compressed end of the table over the one at tightening [1]."""
+"""Total contact force at the compressed end of the table, over the contact force at tightening [1]."""
 _ERROR_SAMPLE_COUNT = 4000
-"""Sample points on either side of the tightened state, at which the error of the table is measured."""
+"""Number of sample points on each side of the tightened state [1], at which the error is measured."""
 _EVALUATION_BLOCK_SIZE = 100_000
-"""Nodes times sample points that are evaluated at once, to limit the memory."""
+"""Number of nodes times sample points that are evaluated at once [1], to limit the memory."""
 
 
 def tabulate_normal_force(
@@ -225,6 +227,7 @@ def tabulate_normal_force(
         ), springs.bolts_per_position * lost.sum(axis=1)
 
     def contact_force_and_stiffness(separation: Array) -> Array:
+        """Force [N] and stiffness [N/m] of the contact at separations [m]."""
         blocks = np.array_split(
             separation[:, None], max(separation.size * approach.size // _EVALUATION_BLOCK_SIZE, 1)
         )
@@ -278,6 +281,7 @@ def _make_springs(
     node_pairs: "NodePairs | None",
     placement: "Placement",
 ) -> "tuple[Springs, str]":
+    """Springs between node pairs, in the tightened state that the user states."""
     spring = BoltedJointSpring.for_interface_nodes(joint)
     if tightened_state is None:
         if node_pairs is None:
@@ -300,6 +304,7 @@ def _joint_stiffness(joint: AnyBoltedJoint, tightened_state: TightenedState) -> 
 
 
 def _contact_curve(joint: AnyBoltedJoint) -> "tuple[Curve, Sequence[str]]":
+    """Contact law of the interface: pressure [Pa] over approach [m]."""
     ratio = float(joint.shear_stiffness_ratio())
     note = f"tangential stiffness of the law: {ratio:.9g} times the slope of the table"
     return BoltedJointSpring.for_interface_nodes(joint).curve, [note]
@@ -308,6 +313,7 @@ def _contact_curve(joint: AnyBoltedJoint) -> "tuple[Curve, Sequence[str]]":
 def _normal_force_table(
     joint: AnyBoltedJoint, tightened_state: TightenedState | None, max_error: float
 ) -> "LoadTable":
+    """Table of normal force and stiffness over the separation, in a tightened state."""
     if tightened_state is None:
         raise ValueError("the curve of a bolted_joint needs a preload")
     spring = BoltedJointSpring.for_interface_nodes(joint)
@@ -315,6 +321,7 @@ def _normal_force_table(
 
 
 _JOINT_VARIABLES = KIND.variables
+"""Inputs and outputs of the bolted joint."""
 EXPORTS = Exports(
     working_point_class=TightenedState,
     springs=_make_springs,
@@ -332,3 +339,4 @@ EXPORTS = Exports(
         compute_table=_normal_force_table,
     ),
 )
+"""Exports that the bolted joint offers."""

@@ -61,16 +61,19 @@ class PlaneLayout:
 
 
 def _frame_outline(bolted_frame: BoltedFrame) -> tuple[Array, Array]:
+    """Rectangles (lower corner, upper corner) of a bolted frame, the outer one first."""
     half = 0.5 * np.array([bolted_frame.column_spacing, bolted_frame.row_spacing])
     signs = np.array([[-1.0], [1.0]])
     return signs * (half + 0.5 * bolted_frame.flange_width), signs * (half - 0.5 * bolted_frame.flange_width)
 
 
 def _mean_pressure(joint: AnyBoltedJoint, preload: float) -> float:
+    """Mean contact pressure [Pa] at a preload [N] per bolt."""
     return float(bolt_pressures(joint, preload, 0.0)[0])
 
 
 def _peak_pressure(joint: AnyBoltedJoint, preload: float) -> float:
+    """Largest contact pressure [Pa] at a preload [N] per bolt."""
     return float(np.max(preload_pressure(joint, pressure_distribution(joint.pattern), preload, 0.0)))
 
 
@@ -82,6 +85,7 @@ def _default_preload(joint: AnyBoltedJoint) -> float:
 
 
 def _proof_load(file: ParameterFile) -> tuple[float, str] | None:
+    """Proof load [N] of the bolts of a parameter file, and the name of this limit; None if not known."""
     hole = PlaneLayout.from_joint(file.values).hole_diameter
     return proof_load(hole, file.sources.get("inputs.preload", "")) if hole else None
 
@@ -93,6 +97,7 @@ NOMINAL_PRESSURE = NominalPressureModel(
     peak_pressure=_peak_pressure,
     load_capacity=_proof_load,
 )
+"""Nominal contact pressure of the bolted joint over its preload."""
 
 
 def insert_elastic_bodies(

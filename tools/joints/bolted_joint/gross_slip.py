@@ -22,7 +22,7 @@ REPORTED_SHEAR_RATIO = 0.1
 
 
 class FrictionResult(NamedTuple):
-    """Gross-slip force and loss factor for one friction coefficient.
+    """Gross-slip force and loss factor of a bolted joint for one friction coefficient.
 
     mu          : friction coefficient [1]
     slip_force  : shear force [N] of gross slip

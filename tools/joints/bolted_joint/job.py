@@ -1,4 +1,4 @@
-"""Bolted joint in the main job: check of the ramp, published points, figures, vibration, laboratory page."""
+"""Bolted joint in the main job (`build_fmus.py`): ramp check, published points, figures, laboratory page."""
 
 import tomllib
 from collections.abc import Mapping, Sequence
@@ -25,9 +25,11 @@ from ...systems.ringing import PlotAxis, SlipDeflection, VibrationTest, WorkingP
 from .picture import draw_plan
 
 _FMU_NAME = "BoltedJoint"
+"""Name of the FMU of the bolted joint."""
 
 
 def _check_separation(folder: Path, ramp_result: ramp.RampResult) -> tuple[str, float]:
+    """Normal force of the FMU while it is pulled apart, compared with the integral of its stiffness."""
     pulled = ramp.run_ramp(folder / f"{_FMU_NAME}.fmu", "s_rel_z", 5e-6, 1e-8, {"preload": 9e3}).columns
     force = -cumulative_simpson(pulled["K_zz"], x=pulled["s_rel_z"], initial=0.0)
     return "f_z pulled apart against the integral of K_zz ds (scipy, Simpson)", relative_deviation(
@@ -87,6 +89,7 @@ VIBRATION_PRELOADS = (3e3, 9e3, 15e3, 30e3)
 
 
 def _rest_state(path: Path, preload: float, parameters: Mapping[str, Any]) -> WorkingPoint:
+    """Tightened joint at a preload [N], about which the simulated system vibrates."""
     start = {**parameters, "preload": preload, "v_rel_x": 1.0}
     with Slave(path, start, (), ("K_xx", "f_x")) as law:
         K, dashpot = law.get_outputs()
@@ -111,15 +114,17 @@ VIBRATION_TEST = VibrationTest(
     stiffness_output="K_xx",
     slip_deflection=SlipDeflection(15e3, 8e-7, "half of the friction limit"),
 )
+"""System of the main job in which a bolted joint vibrates."""
 
 
 _PRESSURE_RANGE = (0.3e6, 8e6)
 """Range [Pa] of the measured curves: the mean pressures of the load ramp."""
 _CURVE_POINTS = 41
-"""Number of points of a measured curve."""
+"""Number of points of a measured curve [1]."""
 
 
 def _bolt_marks(joint: Any) -> tuple[Sequence[Sequence[float]], str]:
+    """Positions (b, 2) [m] of the bolts as marks of the map, and their meaning."""
     try:
         return get_bolted_frame(joint).bolts_from_middle.tolist(), "bolts"
     except ValueError:  # a field of nodal pressures, or a plate

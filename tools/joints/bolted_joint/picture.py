@@ -18,7 +18,7 @@ MAX_WIDTH, MAX_HEIGHT = 420.0, 330.0
 MARGIN, HATCH_SPACING = 64.0, 9.0
 """Margin on all sides, and spacing of the hatching [px]."""
 CELL_OVERLAP = 0.6
-"""Overlap of neighbouring cells [px], which avoids visible gaps."""
+"""Overlap of neighbouring area cells of the pressure map [px], which avoids visible gaps."""
 DOT_RADIUS_RATIO = 0.22
 """Radius of a dot, which marks a node of a field, over the mean distance of the nodes [1]."""
 MIN_SECTION_HEIGHT = 70.0
@@ -26,6 +26,7 @@ MIN_SECTION_HEIGHT = 70.0
 VIRIDIS = np.array(
     [[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]], dtype=np.float64
 )
+"""Colours of the map Viridis (n, 3), from low to high pressure."""
 LINE_COLOUR, GREY, RED, OPEN_COLOUR = "#1d232b", "#5a6572", "#c1442e", "#e3e6ea"
 
 
@@ -38,7 +39,7 @@ class SvgDrawing:
     elements: list[str] = field(default_factory=list)
 
     def add_element(self, tag: str, text: str = "", /, **attributes: object) -> None:
-        """Add an element. An `_` in the name of an attribute becomes `-`."""
+        """Add an SVG element. An `_` in the name of an attribute becomes `-`."""
         attribute_text = " ".join(
             f'{name.replace("_", "-")}="{f"{value:.1f}" if isinstance(value, float) else value}"'
             for name, value in attributes.items()
@@ -49,6 +50,7 @@ class SvgDrawing:
     def add_line(
         self, x1: float, y1: float, x2: float, y2: float, stroke: str = LINE_COLOUR, dash_pattern: str = ""
     ) -> None:
+        """Add a straight line between two points."""
         more = {"stroke_dasharray": dash_pattern} if dash_pattern else {}
         self.add_element("line", x1=x1, y1=y1, x2=x2, y2=y2, stroke=stroke, **more)
 
@@ -62,6 +64,7 @@ class SvgDrawing:
         /,
         **attributes: object,
     ) -> None:
+        """Add a text at a point."""
         self.add_element("text", text, x=x, y=y, text_anchor=anchor, fill=fill, **attributes)
 
     def add_support(self, x1: float, y1: float, x2: float, y2: float) -> None:
@@ -76,6 +79,7 @@ class SvgDrawing:
             self.add_line(x, y, x + out[0], y + out[1], RED)
 
     def add_arrow(self, x: float, y: float, dx: float, dy: float) -> None:
+        """Add an arrow that starts at a point."""
         self.add_element("line", x1=x, y1=y, x2=x + dx, y2=y + dy, stroke=RED, stroke_width=2.5)
         tip, back = np.array([x + dx, y + dy]), np.array([dx, dy]) / np.hypot(dx, dy) * 10.0
         side = 0.4 * np.array([back[1], -back[0]])
@@ -83,6 +87,7 @@ class SvgDrawing:
         self.add_element("polygon", points=" ".join(f"{a:.1f},{b:.1f}" for a, b in corners), fill=RED)
 
     def render(self, label: str) -> str:
+        """Text of the SVG file with a label for screen readers."""
         head = (
             f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {self.width:.0f} {self.height:.0f}" '
             f'width="{self.width:.0f}" role="img" aria-label="{escape(label)}" font-size="13" '
@@ -106,6 +111,7 @@ def draw_plan(joint: AnyBoltedJoint, preload: float, moment: float) -> str:
     sheet = SvgDrawing(max(size[0], 260.0) + 2.0 * MARGIN + 90.0, max(size[1], 150.0) + 2.0 * MARGIN)
 
     def to_pixels(position: Array) -> Array:
+        """Convert a position [m] to pixels."""
         return np.array([MARGIN, MARGIN]) + scale * np.array([position[0] - low[0], high[1] - position[1]])
 
     points, top = isinstance(joint.pattern, NodalField), float(p.max())
@@ -163,7 +169,7 @@ def draw_plan(joint: AnyBoltedJoint, preload: float, moment: float) -> str:
 
 
 def _cell_sizes(joint: AnyBoltedJoint, area_share: Array) -> Array:
-    """Width and height (n, 2) [m] of the cells of a plate or a frame."""
+    """Width and height (n, 2) [m] of the area cells of a plate or a frame."""
     side, plate = np.sqrt(joint.A_0 * area_share)[:, None], joint.pattern
     if not isinstance(plate, BoltedPlate):
         return side * np.ones(2)
@@ -172,16 +178,18 @@ def _cell_sizes(joint: AnyBoltedJoint, area_share: Array) -> Array:
 
 
 def _attachment_name(joint: AnyBoltedJoint) -> str:
+    """Name of the surfaces that move rigidly with the connected bodies; empty for rigid sides."""
     bodies = joint.bodies
     return bodies.attached if joint.has_elastic_members and isinstance(bodies, ElasticBodies) else ""
 
 
 def _bearing_surface_text(joint: AnyBoltedJoint) -> str:
+    """Text on the size of the bearing surfaces under the heads."""
     return "under heads and " + ("at threads" if getattr(joint.bodies, "thread_depth", 0.0) else "nuts")
 
 
 def _pressure_colour(pressure_ratio: float) -> str:
-    """Colour of the map Viridis for a pressure over the largest pressure [1]."""
+    """Colour of a contact pressure over the largest pressure [1], of the map Viridis."""
     place = np.linspace(0.0, 1.0, len(VIRIDIS))
     return "#" + "".join(
         f"{round(float(np.interp(pressure_ratio, place, column))):02x}" for column in VIRIDIS.T
@@ -189,6 +197,7 @@ def _pressure_colour(pressure_ratio: float) -> str:
 
 
 def _draw_colour_bar(svg_drawing: SvgDrawing, x: float, y: float, height: float, max_pressure: float) -> None:
+    """Draw the colour bar of the pressure."""
     steps = 40
     for k in range(steps):
         place = y + height * (1.0 - (k + 1) / steps)

@@ -20,7 +20,7 @@ from ...studies.published.computed import CalibrationFit, PublishedNumbers
 
 
 def largest_pressure(joint: BoltedJointParameters, preload: float) -> float:
-    """Largest nodal pressure [Pa] at a preload [N] per bolt."""
+    """Largest nodal contact pressure [Pa] of the box specimen at a preload [N] per bolt."""
     return float(np.max(preload_pressure(joint, pressure_distribution(joint.pattern), preload, 0.0)))
 
 
@@ -42,12 +42,12 @@ def row_force(joint: BoltedJointParameters, preload: float, moment: float, row: 
 
 
 def critical_area(joint: BoltedJointParameters, choice: str) -> float:
-    """Critical area a'_c [m2] of a spot, by one of the choices of the parameter `critical_area`."""
+    """Critical area a'_c [m2] of a contact spot, by one of the choices of the parameter `critical_area`."""
     return float(zhao.critical_area(replace(joint, critical_area=choice)))
 
 
 def spot_stiffness_ratio(joint: BoltedJointParameters) -> float:
-    """Stiffness of a spot by the choice `family` over that by the choice `hertz` [1]."""
+    """Stiffness of a contact spot by the choice `family` over that by the choice `hertz` [1]."""
     family, hertz = (
         zhao.normal_stiffness(replace(joint, spot_stiffness=kind), 1e-6) for kind in ("family", "hertz")
     )
@@ -60,7 +60,7 @@ def surface_rms_height(joint: BoltedJointParameters, longest_wave: float) -> flo
 
 
 def evaluate_mindlin(joint: BoltedJointParameters, function: str, x: float) -> float:
-    """Mindlin's function of the dissipation, the stored energy or their ratio [1], at a traction ratio x [1].
+    """One of Mindlin's functions of a contact spot in partial slip [1], at a traction ratio x [1].
 
     function : "loop" (H1, dissipation), "storage" (H2, stored energy) or "loss_ratio" (W_d/W)
     """

@@ -36,7 +36,7 @@ EQUAL_FORCE_TOLERANCE = 1e-3
 
 
 def joint_figures(load_history: LoadHistory) -> list[Figure]:
-    """All figures of the joint: pictures, complete joint, preload, friction."""
+    """Make all figures of a bolted joint's report: pictures, complete joint, preload, friction."""
     return [
         picture_figure(load_history),
         *stiffness_figures(load_history),
@@ -121,7 +121,9 @@ def _working_point(load_history: LoadHistory) -> tuple[float, float]:
 
 
 def stiffness_figures(load_history: LoadHistory) -> list[Figure]:
-    """Stiffness of the complete joint, its interface and its bolts, and bolt forces over a force along z.
+    """Figures of the stiffness of joint, interface and bolts, and of bolt forces over a force along z.
+
+    Empty for rigid sides.
 
     Empty for rigid sides.
     """
@@ -155,6 +157,7 @@ def stiffness_figures(load_history: LoadHistory) -> list[Figure]:
 
 
 def _format_value(value: float, unit: str) -> str:
+    """Format a value with three digits in a display unit."""
     return " ".join(format_quantity(value, unit, 4))
 
 
@@ -169,6 +172,7 @@ def _stiffness_rows(compliances: Compliances) -> list[tuple[str, ...]]:
 
 
 def _stiffness_text(compliances: Compliances, remaining_preload: float, moment: float) -> str:
+    """Text under the table of stiffnesses: preload, moment, meaning of the shares."""
     share = compliances.compliance_shares[0]
     largest = float(np.max(share))
     effect = (
@@ -192,7 +196,10 @@ def _stiffness_text(compliances: Compliances, remaining_preload: float, moment: 
 
 
 def _group_equal_rows(columns: Array) -> list[list[int]]:
-    """Indices of the rows, those with equal values together; in the order of the first of each group."""
+    """Group the rows of columns of numbers: indices of rows with equal values together.
+
+    The groups are in the order of their first rows.
+    """
     groups: list[list[int]] = []
     scale = float(np.max(np.abs(columns), initial=0.0))
     for j, row in enumerate(columns):
@@ -206,7 +213,7 @@ def _group_equal_rows(columns: Array) -> list[list[int]]:
 
 
 def _name_bolts(bolts: Sequence[int]) -> str:
-    """Name of a curve of bolts with equal forces."""
+    """Name of a curve that several bolts with equal forces share."""
     names = ", ".join(bolt_force_name(j) for j in bolts)
     return f"{names} (equal)" if len(bolts) > 1 else names
 
@@ -225,5 +232,6 @@ def _bolt_force_chart(spring: BoltedJointSpring, preload: float, moment: float, 
 
 
 REPORT_FIGURES = {"BoltedJoint": joint_figures}
+"""{FMU: function that makes the figures of its report}."""
 CATALOGUE_COMPARISONS: dict[str, Callable[[Model, ParameterFile], list[ComparisonRow]]] = {}
 """Comparisons with catalogue values: none, because there are no catalogues of bolted joints."""

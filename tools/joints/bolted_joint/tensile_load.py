@@ -39,6 +39,7 @@ def bolt_forces(spring: BoltedJointSpring, preload: float, moment: float, tensil
     results = []
 
     def residual(z: Array, K: Array, tensile_force: float) -> Array:
+        """Residual [N, N.m] of the static equilibrium at z, with stiffness K, under a tensile force [N]."""
         p = spring.curve.derivatives(start - G @ z, 0)[0]
         contact = G.T @ (whole.point_area * (p - preload_pressure))
         inside = E.T @ (bolts.bolt_force(tension, E @ z) - tension) - contact

@@ -21,7 +21,9 @@ LOOP_SHEAR_FORCE_RATIO = 0.05
 MAX_SLIP_RATIO = 0.8
 """Largest shear force of the loop over the slip force [1]."""
 LOOP_LOAD_RATIOS = np.geomspace(0.02, 1.0, 5)
-"""Loads of the loops over the end of the ramp [1]. The loss factor is interpolated between them."""
+"""Preloads at which loops are computed, over the end of the load ramp [1].
+
+The loss factor is interpolated between them."""
 START_EXPONENT = 12.0
 """Exponent N of the pressure p ~ approach^N [1] from which the search of the amplitude of a loop starts."""
 MAX_ITERATIONS, RELATIVE_TOLERANCE = 12, 1e-5
@@ -29,7 +31,9 @@ MAX_ITERATIONS, RELATIVE_TOLERANCE = 12, 1e-5
 
 
 def approach(sample: JointSample, preload: Array) -> Array:
-    """Integral of dF/K_zz of the interface over the force F of all bolts, from 0 to preloads (m) [m].
+    """Approach (m) [m] of the interface at preloads (m) [N].
+
+    It is the integral of dF/K_zz over the force F of all bolts.
 
     Below the first point the integrand F/K is a power of F.
     """
@@ -109,3 +113,4 @@ UNCERTAINTY_CURVES = LoadCurves(
     other_inputs=lambda joint: {"temperature": TIGHTENING_TEMPERATURE},
     settings={"embedding": 0.0},
 )
+"""Quantities of the bolted joint along its load ramp."""

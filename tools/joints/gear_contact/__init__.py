@@ -11,3 +11,4 @@ TOOL_MODULES = JointToolModules(
     laboratory="load",
     pressure="load",
 )
+"""Which module of this folder serves which tool."""

@@ -17,10 +17,12 @@ if TYPE_CHECKING:
 
 
 def _contact_curve(contact_parameters: ContactParameters) -> "tuple[Curve, Sequence[str]]":
+    """Contact law of the flanks: pressure [Pa] over approach [m]."""
     return GearContactSpring.tabulate(contact_parameters).curve, ()
 
 
 def _load_table(contact_parameters: ContactParameters, _working_point: None, max_error: float) -> "LoadTable":
+    """Table of normal force [N] over approach [m], for other solvers."""
     from ...exchange.export.tables import tabulate_load
 
     return tabulate_load(
@@ -37,8 +39,10 @@ EXPORTS = Exports(
         compute_table=_load_table,
     ),
 )
+"""Exports that the gear contact offers."""
 
 
 NOMINAL_PRESSURE = FLANK_PRESSURE_MODEL
+"""Nominal contact pressure of the flanks over the normal force."""
 LABORATORY_MODELS = {"GearContact": LaboratoryModel(slider_spans={"f": (0.0, 3e3)})}
 """{FMU: contents of its laboratory page that are not variables of the FMU}."""

@@ -6,6 +6,7 @@ from ...inputs.drawing.part import DrawingOptions, NewJoint, NewJointCommand
 
 
 def _make_joint(options: DrawingOptions) -> NewJoint:
+    """Make a gear contact from the options of a drawing."""
     from jointfmu.contact.surface import ElasticConstants, contact_modulus
     from jointfmu.joints.gear_contact import KIND
     from jointfmu.joints.gear_contact.spring import GearContactSpring
@@ -47,6 +48,7 @@ def _make_joint(options: DrawingOptions) -> NewJoint:
 
 
 def _parse_curvature(radius_text: str) -> float:
+    """Curvature [1/m] of a flank from its radius, positive if convex."""
     from ...inputs.drawing.quantities import parse_value
 
     if radius_text.strip().lower() in ("inf", "flat"):
@@ -74,3 +76,4 @@ NEW_JOINT_COMMAND = NewJointCommand(
     ),
     make_joint=_make_joint,
 )
+"""Drawing of a gear contact: its options, and the function that makes the joint."""

@@ -50,6 +50,7 @@ def is_claim_met(contact: GearContactParameters, of: str, over: str) -> bool:
 
 
 def _replace_parameters(contact: GearContactParameters, **new_values: Any) -> GearContactParameters:
+    """Copy of the gear contact with other values of some parameters."""
     for key in ("D1", "D2", "G1", "G2"):
         if key in new_values:
             name = f"surface{key[1]}"
@@ -59,7 +60,10 @@ def _replace_parameters(contact: GearContactParameters, **new_values: Any) -> Ge
 
 
 def _state_at_real_area(law: Yu2022, area_fraction: float) -> dict[str, float]:
-    """State of the law at a real contact area of `area_fraction` times A_0; largest spot by Eq. 54."""
+    """Contact quantities of the law at a real contact area of `area_fraction` times A_0.
+
+    The largest spot follows from Eq. 54.
+    """
     spots = law.spot_distribution()
     largest = (
         area_fraction * law.A_0 * (1.0 - spots.size_exponent) / (spots.size_exponent * spots.size_prefactor)

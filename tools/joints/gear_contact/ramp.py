@@ -16,10 +16,12 @@ from ...studies.checks import integrate_logarithmically, relative_deviation
 
 
 def _check_approach(folder: Path, ramp_result: RampResult) -> tuple[str, float]:
+    """Approach along the ramp of the FMU, compared with the integral of its compliance."""
     law = load_default("gear_contact").values
     assert isinstance(law, GearContactParameters)
 
     def compliance(force: Array) -> Array:
+        """Compliance 1/K_N [m/N] at normal forces [N]."""
         return 1.0 / (law.A_0 * stiffness_curve(law, force / law.A_0)[0])
 
     c, at = ramp_result.columns, [1, 10, 100, 300]
@@ -28,8 +30,10 @@ def _check_approach(folder: Path, ramp_result: RampResult) -> tuple[str, float]:
 
 
 RAMP_CHECKS = {"GearContact": _check_approach}
-"""{FMU: check}. A check is a function: (folder, ramp of the FMU) -> (name of the compared quantity, largest
-relative deviation [1])."""
+"""{FMU: check of its load ramp}.
+
+A check is a function: (folder, ramp of the FMU) -> (name of the compared
+quantity, largest relative deviation [1])."""
 
 
 def make_figures(job_result: Any) -> list[Figure]:

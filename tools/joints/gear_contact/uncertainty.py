@@ -11,3 +11,4 @@ UNCERTAINTY_CURVES = LoadCurves(
     default_end=lambda contact: 3e3,
     max_load=lambda contact: contact.max_pressure * contact.A_0,
 )
+"""Quantities of the gear contact along its load ramp."""

@@ -10,3 +10,4 @@ TOOL_MODULES = JointToolModules(
     export="load",
     pressure="load",
 )
+"""Which module of this folder serves which tool."""

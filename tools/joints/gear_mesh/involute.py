@@ -7,19 +7,19 @@ import numpy as np
 E_STEEL = 206e9
 """Young's modulus [Pa] of steel wheels for which ISO 6336-1 states the stiffness."""
 TOOTH_STIFFNESS_CORRECTION = 0.8
-"""Factor C_M of ISO 6336-1: measured over theoretical single stiffness [1]."""
+"""Factor C_M of ISO 6336-1 [1]: measured over theoretical stiffness of a tooth pair."""
 REFERENCE_LINE_LOAD = 100e3
 """Tangential load per face width [N/m] below which ISO 6336-1 reduces the tooth stiffness."""
 STIFFNESS_COEFFICIENTS = 0.04723, 0.15551, 0.25791, -0.00635, -0.11654, -0.00193, -0.24188, 0.00529, 0.00182
 """Coefficients C_1 to C_9 [mm um/N] of ISO 6336-1 for the compliance q' of a tooth pair."""
 PROFILE_SHIFT_SUMS = -0.5, 2.0
-"""Range of x_1 + x_2 [1] for which ISO 6336-1 states the tooth stiffness."""
+"""Smallest and largest x_1 + x_2 [1] for which ISO 6336-1 states the tooth stiffness."""
 STANDARD_DEDENDUM = 1.2
 """Dedendum of the basic rack over the module [1] for which C_B of ISO 6336-1 is 1 at 20 degrees."""
 MIN_TIP_THICKNESS = 0.2
 """Usual least tooth thickness at the tip over the module [1]."""
 MAX_DISTANCE_ERROR = 0.01
-"""Largest difference between two centre distances that agree, over the module [1]."""
+"""Largest difference between a stated and the computed centre distance, over the module [1]."""
 DAMPING_RATIO = 0.06
 """Damping ratio [1] of the oscillation of both wheels, as solid discs, on the mesh stiffness."""
 

@@ -17,12 +17,14 @@ if TYPE_CHECKING:
 
 
 def _contact_curve(mesh_parameters: MeshParameters) -> tuple[Curve, Sequence[str]]:
+    """Contact law of the flanks: pressure [Pa] over approach [m]."""
     return tabulate_approach(mesh_parameters), (
         "the flanks only; the deflection of the teeth is added to it",
     )
 
 
 def _load_table(mesh_parameters: MeshParameters, _working_point: None, max_error: float) -> "LoadTable":
+    """Table of force [N] over deflection [m] of a tooth pair, for other solvers."""
     from ...exchange.export.tables import LoadTable, tabulate_law
 
     pair, closing = tabulate_tooth_pair(mesh_parameters)
@@ -45,6 +47,8 @@ EXPORTS = Exports(
         compute_table=_load_table,
     ),
 )
+"""Exports that the gear mesh offers."""
 
 
 NOMINAL_PRESSURE = FLANK_PRESSURE_MODEL
+"""Nominal contact pressure of the flanks over the normal force."""

@@ -80,6 +80,7 @@ def make_joint(options: DrawingOptions) -> NewJoint:
 
 
 def _parse_wheels(options: DrawingOptions) -> InvoluteGearPair:
+    """Gear pair of both wheels, from the options of their geometry."""
     teeth = _parse_pair("teeth", options["teeth"])
     if any(z % 1.0 for z in teeth):
         raise ValueError(f"--teeth = {' '.join(options['teeth'])}: expected whole numbers")
@@ -114,7 +115,10 @@ def _parse_wheels(options: DrawingOptions) -> InvoluteGearPair:
 
 
 def _parse_pair(option: str, texts: Sequence[str]) -> tuple[float, float]:
-    """Parse the numbers of wheel 1 and wheel 2. Raises ValueError for another count, and as `parse_value`."""
+    """Parse the two numbers of an option for wheel 1 and wheel 2.
+
+    Raises ValueError for another count, and as `parse_value`.
+    """
     if len(texts) != 2:
         raise ValueError(f"{format_option_flag(option)} has {len(texts)} values, expected one of each wheel")
     return parse_value(option, texts[0]), parse_value(option, texts[1])
@@ -203,3 +207,4 @@ NEW_JOINT_COMMAND = NewJointCommand(
     ),
     make_joint=make_joint,
 )
+"""Drawing of a gear mesh: its options, and the function that makes the joint."""

@@ -20,10 +20,12 @@ _FULL_CONTACT_FORCE = 10.0
 
 
 def _check_deflection_and_work(folder: Path, ramp_result: RampResult) -> tuple[str, float]:
+    """Deflection and work along the ramp of the FMU, compared with integrals of its stiffness."""
     mesh = load_default("gear_mesh").values
     assert isinstance(mesh, GearMeshParameters)
 
     def compliance(force: Array) -> Array:
+        """Compliance 1/K [m/N] of the mesh at forces [N]."""
         return 1.0 / (mesh.A_0 * stiffness_curve(mesh, force / mesh.A_0)[0]) + 1.0 / mesh.K_tooth
 
     c = ramp_result.columns
@@ -39,8 +41,10 @@ def _check_deflection_and_work(folder: Path, ramp_result: RampResult) -> tuple[s
 
 
 RAMP_CHECKS = {"GearMesh": _check_deflection_and_work}
-"""{FMU: check}. A check is a function: (folder, ramp of the FMU) -> (name of the compared quantity, largest
-relative deviation [1])."""
+"""{FMU: check of its load ramp}.
+
+A check is a function: (folder, ramp of the FMU) -> (name of the compared
+quantity, largest relative deviation [1])."""
 
 
 _FIGURE_FORCES = (5e2, 1e3, 2e3)

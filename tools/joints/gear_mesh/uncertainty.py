@@ -9,7 +9,7 @@ from jointfmu.joints.gear_mesh.spring import MeshParameters
 from ...studies.uncertainty.curves import LoadCurves
 
 RAMP_END_FORCE_RATIO = 0.05
-"""Default end of the ramp over `largest_table_angle` [1]."""
+"""Angle at the default end of the load ramp, over `largest_table_angle` [1]."""
 
 
 def first_contact_angle(mesh: MeshParameters) -> float:
@@ -33,3 +33,4 @@ UNCERTAINTY_CURVES = LoadCurves(
     max_load=largest_table_angle,
     other_inputs=lambda mesh: {"phi2": first_contact_angle(mesh)},
 )
+"""Quantities of the gear mesh along its load ramp."""

@@ -81,7 +81,7 @@ def find_drive(drive_name: str) -> CatalogueEntry:
 
 
 def find_ratio(drive: CatalogueEntry, ratio: float) -> CatalogueEntry:
-    """Find the drive of the same series and size with another ratio.
+    """Find the drive of the catalogue with the same series and size as a drive, and another ratio.
 
     Raises ValueError with the ratios of the catalogue if there is no such drive.
     """
@@ -96,7 +96,7 @@ def find_ratio(drive: CatalogueEntry, ratio: float) -> CatalogueEntry:
 
 
 def _stem(drive: CatalogueEntry) -> str:
-    """Name of a drive with its ratio left out: series, size, and parts after the ratio."""
+    """Name of a drive in the catalogue without its ratio: series, size, and parts after the ratio."""
     parts, ratio = drive.name.split("-"), f"{drive.numbers['ratio'].value:g}"
     places = [place for place, part in enumerate(parts) if part == ratio]
     return "-".join(part for place, part in enumerate(parts) if place != (places or [len(parts)])[-1])
@@ -159,10 +159,12 @@ def _estimate_K3(stiffness_row: Mapping[str, str], source: str) -> SourcedNumber
 _STIFFNESS_HEADINGS = {"K1": "K1_Nm_per_rad", "K2": "K2", "K3": "K3", "T1": "T1_Nm", "T2": "T2_Nm"}
 """{column: heading in the file of stiffnesses}."""
 _TORQUE_HEADINGS = {"rated_torque": "rated_Nm", "peak_torque": "repeated_peak_Nm"}
+"""{column: heading in the file of torques}."""
 _HYSTERESIS_LIMIT_HEADINGS = {
     "hysteresis_loss": "hysteresis_below_arcmin",
     "lost_motion": "lost_motion_below_arcmin",
 }
+"""{column: heading in the file of actuators}; the file has arc minutes."""
 _FRICTION_TABLE_HEADINGS = {
     "ratio": ("ratio", 1.0),
     "K1": ("K1_Nm_per_rad", 1.0),
@@ -180,7 +182,7 @@ _FRICTION_TABLE_HEADINGS = {
 def _rated_and_peak_torque(
     torque_table: TorqueTable, series: str, size: str, ratio: str
 ) -> dict[str, SourcedNumber]:
-    """Rated and repeated peak torque of a drive.
+    """Rated and repeated peak torque of a drive: {column: number with source}.
 
     Published, else estimated from another series; empty if no series has them.
     """
@@ -208,7 +210,7 @@ def _rated_and_peak_torque(
 
 
 def _hysteresis_limits(series: str, size: str, ratio: float) -> dict[str, SourcedNumber]:
-    """Upper limits of hysteresis and lost motion of a drive.
+    """Upper limits of hysteresis and lost motion of a drive: {column: number with source}.
 
     From actuators of the same size, else the largest of all actuators.
     """
@@ -252,14 +254,16 @@ def _make_entry_with_friction(
 
 
 def _read_table(table_name: str) -> list[dict[str, str]]:
+    """Rows of a file of the catalogue: {heading: text} each."""
     path = files("jointfmu_models") / "reference" / f"harmonic_drive_catalogue_{table_name}.csv"
     return list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
 
 
 def _join_name(drive_name: str) -> str:
-    """Normalised name of a drive without separators, for comparisons."""
+    """Name of a drive without separators between its parts, for comparisons."""
     return drive_name.replace("-", "")
 
 
 def _normalise_name(drive_name: str) -> str:
+    """Name of a drive in capital letters, with - between its parts."""
     return re.sub(r"[\s_/-]+", "-", drive_name.strip().lower())

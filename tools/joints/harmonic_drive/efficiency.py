@@ -17,7 +17,9 @@ from .catalogue import list_drives
 from .friction import friction_parameters
 
 _FLANGE_INPUT_NAMES = ("phi1", "w1", "phi2", "w2")
+"""Names of the inputs with angles and speeds of the flanges."""
 _TORQUE_OUTPUT_NAMES = ("tau", "tau1")
+"""Names of the outputs with the torque of the drive and of the motor."""
 _DEVELOPED_FRICTION_ROTATION_RATIO = 20.0
 """Rotation of the wave generator over `presliding` [1] after which friction is fully developed."""
 _STEADY_PARAMETERS: Mapping[str, float] = {
@@ -26,7 +28,7 @@ _STEADY_PARAMETERS: Mapping[str, float] = {
     "error_2": 0.0,
     "error_4": 0.0,
 }
-"""Parameters without hysteresis and kinematic error, which depend on the load history and on the angle."""
+"""Parameter values that switch off hysteresis and kinematic error, which depend on history and angle."""
 
 
 def drives_with_friction() -> list[CatalogueEntry]:
@@ -37,7 +39,7 @@ def drives_with_friction() -> list[CatalogueEntry]:
 
 
 def friction_and_ratio(catalogue_entry: CatalogueEntry) -> dict[str, float]:
-    """Ratio and friction parameters of a catalogue drive: {parameter of the FMU: value}."""
+    """Speed ratio and friction parameters of a catalogue drive: {parameter of the FMU: value}."""
     numbers = {"ratio": catalogue_entry.numbers["ratio"], **friction_parameters(catalogue_entry.numbers)}
     return {name: number.value for name, number in numbers.items()}
 
@@ -51,6 +53,7 @@ class SimulatedDrive:
         self._inputs = self._path[0]
 
     def set_inputs(self, *values: float) -> None:
+        """Set the angles and speeds of both flanges."""
         self._inputs = values
 
     def get_outputs(self) -> list[float]:
@@ -73,6 +76,7 @@ def solve_wind_up(transmitted_torque: Callable[[float], float], torque: float, s
     from scipy.optimize import brentq  # slow to import, and most commands import this module
 
     def residual(angle: float) -> float:
+        """Transmitted torque minus the wanted torque at a wind-up [rad]."""
         return transmitted_torque(angle) - torque
 
     if not torque:
@@ -156,6 +160,7 @@ class DriveTestRig:
         """Wind-up [rad] of the output under a torque [N.m]."""
 
         def transmitted_torque(angle: float) -> float:
+            """Torque [N.m] that the running drive transmits at an output angle."""
             self.drive.set_inputs(self.motor_angle, 0.0, self.motor_angle / self.ratio + angle, 0.0)
             return self.drive.get_outputs()[0]
 
@@ -209,7 +214,7 @@ def lost_motion(spring: HarmonicDriveSpring, torque_ratio: float = LOST_MOTION_T
 
 
 def _final_wind_up(spring: HarmonicDriveSpring, torque_sequence: tuple[float, ...]) -> float:
-    """Wind-up [rad] after a sequence of torques [N.m], starting at rest."""
+    """Wind-up [rad] of a drive after a sequence of torques [N.m], starting at rest."""
     history = spring.initial_history()
     for torque in torque_sequence:
         outputs, history = spring.advance_torque(torque, history)

@@ -58,7 +58,7 @@ class PublishedFriction:
 
 
 class ScaledNumber(NamedTuple):
-    """Number from a scaling law, with the ends of its interval, all in the same unit."""
+    """Friction number from a scaling law, with the ends of its interval, all in the same unit."""
 
     value: float
     interval_low: float
@@ -128,7 +128,7 @@ def _scale_torque(
 
 
 def _mean_loss(published_losses: Sequence[float | None]) -> ScaledNumber:
-    """Mean of the published values, with an interval that is cut at zero."""
+    """Mean of published load-dependent losses [1], with an interval that is cut at zero."""
     published = np.array([value for value in published_losses if value is not None])
     value, half = _predict_with_interval(np.ones((published.size, 1)), published, np.ones(1))
     return ScaledNumber(value, max(value - half, 0.0), value + half)
@@ -343,7 +343,10 @@ def add_friction_estimates(
     text += ", scaled by size and ratio"
 
     def add_estimate(column: str, value: float, *interval_ends: float) -> None:
-        """Add an estimate for a column of the catalogue, unless the catalogue has a value for the drive."""
+        """Add an estimated number to the catalogue entry of a drive.
+
+        A column for which the catalogue has a value is left unchanged.
+        """
         interval = min(interval_ends), max(interval_ends)
         numbers.setdefault(column, SourcedNumber(value, "estimate", text, interval=interval))
 

@@ -1,4 +1,4 @@
-"""Harmonic drive in the main job: checks of the ramps, published points, figures, vibration, laboratory."""
+"""Harmonic drive in the main job (`build_fmus.py`): ramp checks, published points, figures, laboratory."""
 
 import math
 from collections.abc import Mapping
@@ -29,12 +29,14 @@ from . import efficiency
 
 
 def _check_compliance(folder: Path, ramp_result: ramp.RampResult) -> tuple[str, float]:
+    """Wind-up along the ramp of the FMU with torque input, compared with the integral of its compliance."""
     c = ramp_result.columns
     phi = cumulative_simpson(1.0 / c["K_WTS"], x=c["tau"], initial=0.0)
     return "phi_rel against the integral of dT/K_WTS (scipy, Simpson)", relative_deviation(c["phi_rel"], phi)
 
 
 def _check_stiffness(folder: Path, ramp_result: ramp.RampResult) -> tuple[str, float]:
+    """Torque along the ramp of the FMU with motion input, compared with the integral of its stiffness."""
     c = ramp_result.columns
     tau = cumulative_simpson(c["K_WTS"], x=c["phi_rel"], initial=0.0)
     return "tau against the integral of K_WTS dphi (scipy, Simpson)", relative_deviation(c["tau"], tau)
@@ -72,6 +74,7 @@ def compute_through_fmu(published_point: PublishedPoint, folder: Path) -> float 
 
 
 _COMPLIANCE_FMU = "HarmonicDriveCompliance"
+"""Name of the FMU with torque as input."""
 
 
 def make_figures(job_result: Any) -> list[Figure]:
@@ -176,13 +179,14 @@ VIBRATION_TORQUE_RATIOS = (0.0, 0.1, 0.2, 0.4, 0.7, 1.0)
 
 
 def _vibration_torques(path: Path, parameters: Mapping[str, float]) -> list[float]:
-    """Mean torques [N.m] at which free vibrations are simulated: from zero to the rated torque."""
+    """Mean torques [N.m] at which free vibrations of a drive are simulated: zero to rated torque."""
     with Slave(path, parameters, (), ("rated_torque",)) as drive:
         (rated,) = drive.get_outputs()
     return [share * rated for share in VIBRATION_TORQUE_RATIOS]
 
 
 def _rest_state(path: Path, torque: float, parameters: Mapping[str, float]) -> WorkingPoint:
+    """Working point of a drive under a torque [N.m], about which the simulated system vibrates."""
     with Slave(path, {**parameters, "w2": 1.0}, ("w1",), ("tau",)) as dashpot:
         (damping,) = dashpot.get_outputs()
     with Slave(path, parameters, ("phi2", "w2"), ("tau", "K_WTS")) as law:
@@ -194,11 +198,13 @@ def _wind_up_and_stiffness(drive: Slave, torque: float) -> tuple[float, float]:
     """Wind-up [rad] and stiffness [N.m/rad] of a drive under a torque [N.m]."""
 
     def torque_and_stiffness(angle: float) -> tuple[float, float]:
+        """Torque [N.m] and stiffness [N.m/rad] of the drive at an angle [rad]."""
         drive.set_inputs(angle, 0.0)
         transmitted, stiffness = drive.get_outputs()
         return transmitted, stiffness
 
     def transmitted_torque(angle: float) -> float:
+        """Torque [N.m] of the drive at an angle [rad]."""
         return torque_and_stiffness(angle)[0]
 
     angle = efficiency.solve_wind_up(transmitted_torque, torque, torque_and_stiffness(0.0)[1])
@@ -222,6 +228,7 @@ VIBRATION_TEST = VibrationTest(
     slip_deflection=SlipDeflection(0.0, 5e-4, "three lengths of its hysteresis"),
     frictionless_parameters={"hysteresis_loss": 0.0},
 )
+"""System of the main job in which a harmonic drive vibrates."""
 
 
 _LABORATORY_INPUT_RANGES = {
@@ -243,11 +250,13 @@ _LABORATORY_INPUT_RANGES = {
     **{f"error_{n}": (0.0, 1e-3) for n in KINEMATIC_ERROR_HARMONICS},
     **{f"error_{n}_phase": (-math.pi, math.pi) for n in KINEMATIC_ERROR_HARMONICS},
 }
+"""{parameter: lower and upper end of its slider [SI]}."""
 _PUBLISHED_POINT_INPUTS = {
     "torque": "tau",
     "deformation": "radial_deformation",
     "eccentricity": "eccentricity",
 }
+"""{argument of a published number: variable of the FMU}."""
 
 _TRANSMISSION_VIEW = TransmissionView(
     input_angle="phi1",
@@ -261,14 +270,18 @@ _TRANSMISSION_VIEW = TransmissionView(
     rated="rated_torque",
     default_speed=200.0,
 )
+"""Animation of the drive on the laboratory page."""
 _LOAD_CYCLE = MODELS["HarmonicDriveSpring"].load_cycle
+"""Load cycle of the FMU that shows hysteresis."""
 _EXAMPLE_DRIVE = efficiency.drives_with_friction()[0]
+"""Catalogue drive of the example with friction."""
 _LABORATORY_EXAMPLE = ExampleValues(
     f"friction of the catalogue's {_EXAMPLE_DRIVE.name}, 1 arcmin of hysteresis and of kinematic error",
     {k: v for k, v in efficiency.friction_and_ratio(_EXAMPLE_DRIVE).items() if k != "ratio"}
     | {k: float(v) for k, v in (_LOAD_CYCLE.variable_values if _LOAD_CYCLE else {}).items()}
     | {"error_2": 1.5e-4},
 )
+"""Values that the example button of the laboratory page sets."""
 
 LABORATORY_MODELS = {
     "HarmonicDriveSpring": LaboratoryModel(

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 
 def _torque_table(drive: DriveParameters, _working_point: None, max_error: float) -> "LoadTable":
+    """Table of torque [N.m] over wind-up [rad], for other solvers."""
     from ...exchange.export.tables import tabulate_odd_curve
 
     return tabulate_odd_curve(HarmonicDriveSpring.tabulate(drive).curve, max_error)
@@ -37,16 +38,20 @@ EXPORTS = Exports(
         "contact": "its stiffness is a sum over the nodes of a mesh, not over an area; export its curve"
     },
 )
+"""Exports that the harmonic drive offers."""
 
 
 _ContactPairDrive = HarmonicDriveParameters | RoughHarmonicDriveParameters
+"""Drive whose stiffness follows from the contact pair of flexspline and bearing."""
 
 
 def _peak_pressure(drive: _ContactPairDrive, torque: float) -> float:
+    """Largest pressure [Pa] of the contact pair at a torque [N.m]."""
     return float(peak_pressure(drive, torque)[0])
 
 
 def _mean_pressure(drive: _ContactPairDrive, torque: float) -> float:
+    """Mean pressure [Pa] of the contact pair at a torque [N.m]."""
     return drive.mean_over_peak * _peak_pressure(drive, torque)
 
 
@@ -63,3 +68,4 @@ NOMINAL_PRESSURE = NominalPressureModel(
     peak_pressure=_peak_pressure,
     joint_to_law_stiffness_ratio=_joint_to_law_stiffness_ratio,
 )
+"""Nominal pressure of the contact pair over the torque."""

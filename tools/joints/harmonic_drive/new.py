@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 _OPTION_COLUMNS = ("ratio", *STIFFNESS_COLUMN_NAMES, "rated_torque", *FRICTION_COLUMNS)
 """Columns of the catalogue that the user can state."""
 DAMPING_TIME = 1e-4
-"""Damping d over K1 [s]: a damping ratio of 2 % for a natural frequency of 60 Hz."""
+"""Damping d over the stiffness K1 [s] of a new drive: damping ratio of 2 % at a frequency of 60 Hz."""
 FIXED_PARTS: Mapping[str, str] = {
     "circular-spline": "circular spline fixed, output the flexspline: it turns against the motor",
     "flexspline": "flexspline fixed, output the circular spline: with the motor, one more than printed",
@@ -39,10 +39,13 @@ FIXED_PARTS: Mapping[str, str] = {
 MIN_EFFICIENCY = 0.1
 """Least efficiency [1] at rated torque and 2000 rev/min: drives of the catalogue have 0.5 to 0.85."""
 PEAK_TORQUE_RATIO = 4.0
-"""max_torque over rated torque [1], if no repeated peak torque is known; about that of catalogue drives."""
+"""Largest torque of the table (max_torque) over rated torque [1], if no repeated peak torque is known.
+
+Catalogue drives have about this ratio."""
 
 
 def _make_joint(options: DrawingOptions) -> NewJoint:
+    """Make a harmonic drive from the options of `jointfmu new`."""
     source, printed = options["source"] or options["catalogue"] or "catalogue", {}
     if options["catalogue"]:
         drive = find_drive(options["catalogue"])
@@ -209,7 +212,10 @@ def _add_motor_drag(
 
 
 def _stated_number(options: DrawingOptions, value: float) -> SourcedNumber:
-    """Number that the user states, with its source: a catalogue row, or a replacement for a named drive."""
+    """Number that the user states, with its source text.
+
+    The source is a catalogue row, or a replacement of a number of a named drive.
+    """
     kind = "user" if options["catalogue"] and not options["source"] else "catalogue"
     return SourcedNumber(value, kind, options["source"] or "stated")
 
@@ -391,3 +397,4 @@ NEW_JOINT_COMMAND = NewJointCommand(
     ),
     make_joint=_make_joint,
 )
+"""Options of `jointfmu new harmonic-drive`, and the function that makes the joint."""

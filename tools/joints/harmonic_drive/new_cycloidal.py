@@ -41,6 +41,7 @@ RIGIDITY_CHANGE_TORQUE_RATIO = 0.5
 
 
 def _make_joint(options: DrawingOptions) -> NewJoint:
+    """Make a cycloidal drive from the options of `jointfmu new`."""
     from .fit import catalogue
 
     source = options["source"] or "stated"
@@ -133,7 +134,7 @@ def _set_lost_motion(parameter_file: ParameterFile, lost_motion_text: str, sourc
 
 
 def _drive_facts(joint: NewJoint) -> dict[str, tuple[float, str, str]]:
-    """Wind-up at rated torque, lost motion and hysteresis loss, as computed with the parameters."""
+    """Facts about a cycloidal drive: computed wind-up at rated torque, lost motion and hysteresis loss."""
     drive = joint.file.values
     spring = HarmonicDriveSpring.tabulate(drive)
     facts = wind_up_facts(spring, LOST_MOTION_TORQUE_RATIO)
@@ -182,3 +183,4 @@ NEW_CYCLOIDAL_DRIVE_COMMAND = NewJointCommand(
     ),
     make_joint=_make_joint,
 )
+"""Options of `jointfmu new cycloidal-drive`, and the function that makes the joint."""

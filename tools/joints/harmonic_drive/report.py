@@ -38,9 +38,9 @@ MOTOR_SPEEDS = (500, 2000, 3500)
 LUBRICANT_TEMPERATURES = (263.15, REFERENCE_TEMPERATURE, 333.15)
 """Temperatures of the lubricant [K]: lower limit of catalogues, reference temperature, and a warm drive."""
 _CURVE_POINTS = 41
-"""Number of points of a plotted curve."""
+"""Number of points of a plotted curve [1]."""
 _MAX_BACK_DRIVING_TORQUE_RATIO = 10.0
-"""End of the search for the back-driving torque over the rated torque [1]."""
+"""Torque at which the search for the back-driving torque ends, over the rated torque [1]."""
 
 
 def friction_figures(load_history: LoadHistory) -> list[Figure]:
@@ -98,6 +98,7 @@ def _speed_figure(parameter_file: ParameterFile) -> Figure:
 
 
 def _format_celsius(temperature: float) -> str:
+    """Format a temperature [K] in degrees Celsius."""
     return f"{temperature - CELSIUS_ZERO_IN_KELVIN:g} degrees C"
 
 
@@ -105,9 +106,11 @@ _LOOP_QUANTITIES = {
     "hysteresis_loss": (hysteresis_loss, ROLE_INDEPENDENT),
     "lost_motion": (lost_motion, ROLE_PREDICTED),
 }
+"""Quantities of the hysteresis loop in a catalogue: {column: function that computes it}."""
 _FRICTION_UNITS = {
     column.name: column.unit for column in CATALOGUE_COLUMNS if column.name in FRICTION_COLUMNS
 }
+"""Units of the friction columns of a catalogue: {column: unit}."""
 
 
 def compare_with_catalogue(model: Model, parameter_file: ParameterFile) -> list[ComparisonRow]:
@@ -121,6 +124,7 @@ def compare_with_catalogue(model: Model, parameter_file: ParameterFile) -> list[
 
 
 def _find_catalogue_entry(parameter_file: ParameterFile) -> CatalogueEntry | None:
+    """Catalogue entry of the drive of a parameter file; None if the catalogue has no such drive."""
     for name in (parameter_file.name, parameter_file.sources.get("ratio", "").partition(":")[0]):
         try:
             return find_drive(name)
@@ -132,6 +136,7 @@ def _find_catalogue_entry(parameter_file: ParameterFile) -> CatalogueEntry | Non
 def _comparison_rows(
     model: Model, parameter_file: ParameterFile, entry: CatalogueEntry
 ) -> Iterator[ComparisonRow]:
+    """Rows that compare the numbers of a catalogue entry with those of the drive."""
     printed, spring = entry.numbers, HarmonicDriveSpring.tabulate(parameter_file.values)
     yield from _wind_up_rows(
         spring,
@@ -157,7 +162,7 @@ def _comparison_rows(
 def _wind_up_rows(
     spring: HarmonicDriveSpring, sourced_numbers: Mapping[str, SourcedNumber], role: str
 ) -> Iterator[ComparisonRow]:
-    """Compare the wind-up at T1, T2, rated and peak torque: catalogue, and drive without hysteresis."""
+    """Rows that compare the wind-up at T1, T2, rated and peak torque: catalogue, drive's midline."""
     lines = {name: sourced_numbers[name].value for name in STIFFNESS_COLUMN_NAMES}
     torques = {
         name: sourced_numbers[name]
@@ -194,4 +199,6 @@ def _compute_friction_value(
 
 
 REPORT_FIGURES = {"HarmonicDriveSpring": friction_figures}
+"""{FMU: function that makes the figures of its report}."""
 CATALOGUE_COMPARISONS = {"HarmonicDriveSpring": compare_with_catalogue}
+"""{FMU: function that compares the drive with its catalogue}."""

@@ -25,6 +25,7 @@ def make_transmission(file: ParameterFile) -> Transmission:
     spring = HarmonicDriveSpring.tabulate(drive)
 
     def wind_up(torques: ArrayLike) -> Array:
+        """Wind-ups (n) [rad] along torques (n) [N.m] from rest, with locked motor."""
         memory, found = spring.initial_history(), []
         for torque in np.asarray(torques, dtype=np.float64):
             out, memory = spring.advance_torque(torque, memory)

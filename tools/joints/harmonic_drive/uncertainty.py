@@ -12,3 +12,4 @@ UNCERTAINTY_CURVES = LoadCurves(
     max_load=lambda drive: drive.max_table_torque,
     settings={"hysteresis_loss": 0.0},
 )
+"""Quantities of the harmonic drive along its load ramp."""

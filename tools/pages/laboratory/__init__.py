@@ -1,1 +1,1 @@
-"""The laboratory: a page that runs the C code of the native FMUs in the browser."""
+"""The laboratory: an HTML page that runs the C code of the native FMUs in the browser."""

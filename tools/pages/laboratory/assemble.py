@@ -23,6 +23,7 @@ from jointfmu.version import __version__
 from .describe import compile_modules, describe_module, list_modules
 
 _WEB_FOLDER = Path(__file__).with_name("web")
+"""Folder with template, style sheet and scripts of the page."""
 _SCRIPT_NAMES = (
     *("engine", "sight", "controls"),
     *("curves", "path", "turn", "contact", "body", "files", "main"),
@@ -38,7 +39,7 @@ _COLUMN_UNITS = {
 
 
 def write_laboratory(path: Path) -> None:
-    """Write the self-contained page; an existing file is replaced atomically.
+    """Write the laboratory as a self-contained page; an existing file is replaced atomically.
 
     Raises ValueError if it cannot be written, ImportError if ziglang is missing, RuntimeError if the
     compiler fails.
@@ -47,7 +48,7 @@ def write_laboratory(path: Path) -> None:
 
 
 def render_page() -> str:
-    """Render the page as HTML text."""
+    """Render the laboratory page as HTML text."""
     page_modules = list_modules()
     binaries = compile_modules(page_modules)
     sizes = [len(binary) for binary in binaries]

@@ -35,13 +35,16 @@ from ...studies.published.reference import ROLES, read_points
 from .joint_additions import LaboratoryModel
 
 _LABORATORY_SOURCE_NAME = "laboratory.c"
+"""C file with the functions that the page calls."""
 _CONTACT_MAP_SOURCE_NAME = "map.c"
+"""C file of a joint for the map of the contact."""
 _CODE_GENERATION_LOCK = Lock()
+"""Lock for the generation of C code, which several threads must not do at once."""
 
 
 @dataclass(frozen=True, slots=True)
 class PageModule:
-    """A model with the parameter files that share its C code.
+    """WebAssembly module of the page: a model, and the parameter files that share its C code.
 
     parameter_files : parameter files; the first one gives the start values
     """
@@ -59,7 +62,10 @@ class PageModule:
         return Path(str(module.__file__)).with_name(_CONTACT_MAP_SOURCE_NAME) if module else None
 
     def collect_sources(self) -> dict[str, str]:
-        """Collect all C sources, of the FMU and of the functions that the page calls: {file name: text}."""
+        """Collect all C sources of the module: {file name: text}.
+
+        They are those of the FMU and of the functions that the page calls.
+        """
         # imported here because it needs casadi, which pages of the report do not need
         from jointfmu_fmu_src.native.code.generate import generate_sources, read_instantiation_token
 
@@ -93,6 +99,7 @@ class PageModule:
         return {path.name: path.read_text(encoding="utf-8") for path in paths}
 
     def _compile_uncached(self) -> bytes:
+        """Compile the module to WebAssembly."""
         with _CODE_GENERATION_LOCK:  # casadi is not thread-safe
             files = self.collect_sources()
         units = [name for name in files if name.endswith(".c") and not name.startswith("fmi")]
@@ -100,7 +107,7 @@ class PageModule:
 
 
 def list_modules() -> list[PageModule]:
-    """List the modules of all joints and shipped parameter files, in display order."""
+    """List the WebAssembly modules of all joints and shipped parameter files, in display order."""
     return [
         module
         for kind in KINDS.values()
@@ -110,13 +117,13 @@ def list_modules() -> list[PageModule]:
 
 
 def compile_modules(page_modules: Sequence[PageModule]) -> list[bytes]:
-    """Compile modules to WebAssembly in parallel threads; returns the binaries."""
+    """Compile the modules of the page to WebAssembly in parallel threads; returns the binaries."""
     with ThreadPoolExecutor() as pool:
         return list(pool.map(PageModule.compile_module, page_modules))
 
 
 def _group_files_by_c_code(joint_kind: JointKind, model: Model) -> Iterator[PageModule]:
-    """Group the shipped files of a joint into modules.
+    """Group the shipped parameter files of a joint into modules with the same C code.
 
     Files share the C code if they have the same law and the same values of all parameters that the FMU does
     not expose.
@@ -140,13 +147,13 @@ def _load_shipped_files(joint_kind: JointKind) -> list[ParameterFile]:
 
 
 _INPUT_SLIDER_END_OVER_NOMINAL = 2.0
-"""Largest value of an input's slider over the nominal value of the input [1]."""
+"""Largest value of an input's slider on the page, over the nominal value of the input [1]."""
 _PARAMETER_SLIDER_END_OVER_START = 10.0
 """Factor between start value and both ends of a parameter's slider, if no interval is known [1]."""
 
 
 def describe_module(module: PageModule) -> dict[str, object]:
-    """Describe a module as a JSON object: all of its content except the WebAssembly binary."""
+    """Describe a module of the page as a JSON object: all of its content except the WebAssembly binary."""
     model, first = module.model, module.parameter_files[0]
     kind, bench = KINDS[model.joint], _laboratory_model(model)
     bound = set(_list_compiled_parameters(first))
@@ -180,10 +187,10 @@ def describe_module(module: PageModule) -> dict[str, object]:
 
 
 def pair_conjugate_variables(model: Model) -> dict[str, str]:
-    """Energy-conjugate pairs of inputs and outputs: {input: output}.
+    """Energy-conjugate pairs of inputs and outputs of a model: {input: output}.
 
     Their units are N and m, or N.m and rad, and their suffixes are equal (`f_x` and `s_rel_x`). If the input
-    of the load ramp has no suffix, its partner is the first output with a matching unit.
+    of the load ramp has no suffix, it is paired with the first output with a matching unit.
     """
     conjugates = {}
     for i in model.inputs:
@@ -204,6 +211,7 @@ def _laboratory_model(model: Model) -> LaboratoryModel:
 def _variable_to_json(
     variable: ListedVariable, model: Model, laboratory_model: LaboratoryModel
 ) -> dict[str, object]:
+    """JSON object of a variable of the model: name, unit, meaning, slider."""
     unit = variable.attributes.get("unit", "1")
     row: dict[str, object] = {
         "name": variable.name,
@@ -227,13 +235,14 @@ def _variable_to_json(
 
 
 def _interval_end(variable: ListedVariable, end_name: str) -> float | None:
+    """Lower or upper end of the interval in which an input is valid; None if it has none."""
     return float(variable.attributes[end_name]) if end_name in variable.attributes else None
 
 
 def _slider_span(
     variable: ListedVariable, model: Model, variable_document: dict[str, Any]
 ) -> tuple[float, float]:
-    """Lower and upper end of a slider [SI]."""
+    """Lower and upper end of the slider of a variable on the page [SI]."""
     if variable.is_boolean:
         return 0.0, 1.0
     start = float(variable.start or 0.0)
@@ -320,6 +329,7 @@ def _parameter_set_to_json(file: ParameterFile, model: Model) -> dict[str, objec
 
 
 def _published_points(model: Model, laboratory_model: LaboratoryModel) -> Iterator[dict[str, object]]:
+    """JSON list of the published points that the page compares with the model."""
     outputs = {v.name: v for v in model.outputs}
     known = {v.name for v in model.inputs} | set(model.parameter_fields())
     for paper in load_published_numbers(KINDS[model.joint]).papers:
@@ -343,6 +353,7 @@ def _published_points(model: Model, laboratory_model: LaboratoryModel) -> Iterat
 
 
 def _contact_map_to_json(laboratory_model: LaboratoryModel, file: ParameterFile) -> dict[str, object] | None:
+    """JSON object of the map over the contact; None if the joint has none."""
     picture = laboratory_model.contact_map
     if picture is None:
         return None

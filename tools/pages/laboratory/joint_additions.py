@@ -23,7 +23,7 @@ class PublishedQuantity(NamedTuple):
 
 
 class MeasuredCurve(NamedTuple):
-    """A measured curve to compare with a panel.
+    """Measured curve of the literature, to compare with a panel of the laboratory page.
 
     label, source      : name of the curve, source of the data
     abscissa, ordinate : variables of the panel
@@ -40,10 +40,13 @@ class MeasuredCurve(NamedTuple):
 
 
 class ContactMap(NamedTuple):
-    """Map of a quantity over the contact, computed by `lab_map` in the file `map.c` of the joint.
+    """Map of a quantity over the contact on the laboratory page.
+
+    The C function `lab_map` in the file `map.c` of the joint computes it.
 
     unit, display_unit : SI unit, unit on the page
-    compute_marks      : parameter set -> positions (n, 2) [m] of marks, and their meaning; may be empty
+    compute_marks      : parameter set -> positions (n, 2) [m] of marks (such as bolts), and their meaning;
+                         may be empty
     """
 
     name: str
@@ -85,7 +88,7 @@ class ExampleValues(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LaboratoryModel:
-    """Additions to one model on the laboratory page.
+    """Additions of a joint to the laboratory page of one of its models.
 
     panels           : curves in addition to those of the FMU's documentation
     slider_spans     : {variable: (lower, upper end of its slider [SI])}, in place of the computed ends

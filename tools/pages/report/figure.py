@@ -21,11 +21,12 @@ def style_sheet() -> str:
 
 
 def page_script(*names: str) -> str:
-    """JavaScript of the charts, and of the named scripts of this folder."""
+    """JavaScript of the charts of a report, and of the named scripts of this folder."""
     return chart.read_script("figures") + "".join(map(_read_asset, names))
 
 
 def _read_asset(name: str) -> str:
+    """Text of a file in the folder of this module."""
     return Path(__file__).with_name(name).read_text(encoding="utf-8")
 
 
@@ -55,6 +56,7 @@ class ComparisonRow(NamedTuple):
 __all__ = ["Figure", "Panel", "Series", "draw_panels", "published_series"]
 
 _SERIES_COLOURS = (BLUE, RED, GREEN, GREY, "#8055a8", "#b8860b")
+"""Colours of the curves of a chart, in their order."""
 
 
 class Figure(NamedTuple):

@@ -34,8 +34,9 @@ from .figure import ComparisonRow, Figure, Panel, Series, page_script, style_she
 from .load_history import LoadHistory
 
 _STIFFNESS_UNITS = ("N/m", "N.m/rad")
+"""SI units of stiffnesses."""
 _CONSTANT_STIFFNESS_RATIO = 0.02
-"""Relative change [1] below which a stiffness is called constant."""
+"""Relative change of the stiffness over the load ramp [1], below which it is called constant."""
 
 
 def summarise_joint(
@@ -60,7 +61,7 @@ def summarise_joint(
 
 
 _ESTIMATED_ORIGINS = {"estimate": "are estimates", "calibration": "were fitted"}
-"""{origin of an uncertain parameter: text}."""
+"""{origin of an uncertain parameter: end of the sentence that names such parameters}."""
 
 
 def _format_value(value: float, unit: str) -> str:
@@ -135,7 +136,7 @@ VALIDITY_HEADINGS = {
 
 
 class _ReportRow(NamedTuple):
-    """A number of the parameter file as text.
+    """Row of the report's table of parameters: a number of the parameter file as text.
 
     display_value, unit : value in a display unit, the unit
     si_value            : value in SI units; empty if the display unit is the SI unit
@@ -160,6 +161,7 @@ def write_joint_report(path: Path, file: ParameterFile, fmu: str | None = None) 
 
 
 def _render_page(model: Model, file: ParameterFile) -> str:
+    """Render the report page of one joint as HTML text."""
     set_status_text("curves over the load")
     course = LoadHistory(model, file)
     folder, rows = Path(__file__).parent, _report_rows(file)
@@ -200,7 +202,7 @@ def _render_page(model: Model, file: ParameterFile) -> str:
 
 
 def _report_rows(file: ParameterFile) -> list[_ReportRow]:
-    """Rows of all entries of the parameter file."""
+    """Rows of the report's table for all entries of the parameter file."""
     return [
         _ReportRow(
             e.name, *format_quantity(e.value, e.unit), _format_si_value(e), e.meaning, e.origin, e.source
@@ -210,7 +212,10 @@ def _report_rows(file: ParameterFile) -> list[_ReportRow]:
 
 
 def _format_si_value(entry: ParameterFileEntry) -> str:
-    """Format the value in SI units; empty if the display unit is the SI unit, or if there is no unit."""
+    """Format the value of an entry in SI units.
+
+    Empty if the display unit is the SI unit, or if there is no unit.
+    """
     if entry.unit is None or isinstance(entry.value, bool | str | tuple):
         return ""
     return (
@@ -231,6 +236,7 @@ def _title_in_words(output_names: Sequence[str], over: str, variables: Mapping[s
     """Title of a panel by the meanings of its variables: "Normal stiffness over preload of each bolt"."""
 
     def meaning(name: str) -> str:
+        """Meaning of a variable as the beginning of a title."""
         return re.split(r"[,;:(]| -?d\w+/d", variables[name].doc)[0].strip()
 
     quantities = ", ".join(dict.fromkeys(map(meaning, output_names)))
@@ -300,10 +306,11 @@ def loop_figure(load_history: LoadHistory, loops: HysteresisLoops) -> Figure:
 
 
 def _loop_rows(loops: HysteresisLoops) -> list[tuple[str, ...]]:
-    """Table of the loops in display units: amplitude, force, stiffness, energy loss, loss factor."""
+    """Rows of the table of hysteresis loops: amplitude, force, stiffness, energy loss, loss factor."""
     units = loops.result_units
 
     def format_cell(row: dict[str, float], name: str) -> str:
+        """Format one number of a loop in its display unit."""
         value, unit = _to_display_unit(row[name], units[name])
         return f"{float(value):.4g} {unit}"
 
@@ -316,7 +323,7 @@ def _loop_rows(loops: HysteresisLoops) -> list[tuple[str, ...]]:
 
 
 def _comparison_rows(rows: list[ComparisonRow]) -> list[dict[str, str]]:
-    """Template rows that compare published with computed numbers, in display units."""
+    """Template rows that compare published with computed numbers of a joint, in display units."""
     cells = []
     for row in rows:
         unit = choose_display_unit(row.unit, row.published)
@@ -329,7 +336,10 @@ def _comparison_rows(rows: list[ComparisonRow]) -> list[dict[str, str]]:
 
 
 def _describe_range(load_history: LoadHistory) -> str:
-    """Describe the range of loads: the end of the law, or the load capacity of the parts if it is less."""
+    """Describe the range of loads of a joint in a sentence.
+
+    It ends at the end of the law, or at the load capacity of the parts if that is less.
+    """
     ramped = next(v for v in load_history.model.inputs if v.name == load_history.model.ramp.input_name)
     nominal = find_nominal_pressure_model(KINDS[load_history.file.joint])
     capacity = nominal.load_capacity(load_history.file) if nominal else None

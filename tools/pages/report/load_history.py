@@ -11,7 +11,7 @@ from ...run.ramps.loops import CyclicPath, HysteresisLoops, find_conjugate_outpu
 from ...run.ramps.ramp import RampResult
 
 _RAMP_POINTS = 101
-"""Number of points of the load ramp."""
+"""Number of points of the load ramp [1]."""
 _LOAD_CYCLE = CyclicPath(points=80)
 """Load cycle: points per cycle, shape, number of cycles."""
 AMPLITUDE_RATIOS = (0.25, 0.5, 1.0)
@@ -19,7 +19,7 @@ AMPLITUDE_RATIOS = (0.25, 0.5, 1.0)
 _MAX_LOAD_DOUBLINGS, _LAW_LIMIT_BISECTIONS = 10, 12
 """Doublings of the load in the search for the end of the law, and bisections to locate it."""
 _GROSS_SLIP_RATIO = 0.95
-"""Force over the force at gross slip [1] above which the joint counts as slipping."""
+"""Force over the force at gross slip [1], above which the joint counts as slipping."""
 
 
 class LoadHistory:
@@ -78,6 +78,7 @@ class LoadHistory:
         largest = loop.amplitude
 
         def force_range(amplitude: float) -> float:
+            """Range of the output force in a load cycle with an amplitude."""
             points = self.loop_inputs[loop.input_name] + np.array([0.0, amplitude])
             return float(
                 np.ptp(self._compute_along_path(loop.input_name, points, {}).columns[conjugate_output])
@@ -106,6 +107,7 @@ class LoadHistory:
         model = self.model
 
         def list_warnings_at(input_value: float) -> dict[int, str]:
+            """Warnings of the model at a value of the ramped input."""
             columns = self._engine.follow({model.ramp.input_name: input_value}, each_from_rest=True).columns
             return model.find_warnings(
                 self.spring, {name: float(column[0]) for name, column in columns.items()}
@@ -114,6 +116,7 @@ class LoadHistory:
         before = list_warnings_at(0.0)
 
         def list_new_warnings(input_value: float) -> list[str]:
+            """Warnings at a value of the ramped input that are absent at zero."""
             return [text for number, text in list_warnings_at(input_value).items() if number not in before]
 
         low, high = 0.0, 2.0**-_MAX_LOAD_DOUBLINGS * model.ramp.end_value

@@ -23,7 +23,7 @@ from .systems import motion_figures, resonance_figures, ring_down_figures
 
 
 def build_figures(build_result: Any) -> dict[str, list[Figure]]:
-    """Build the figures of all joints: {joint: figures}.
+    """Build the figures of the report for all joints: {joint: figures}.
 
     build_result : result of `python build_fmus.py` with simulated systems
     """
@@ -72,6 +72,7 @@ def _tab_template_variables(joint_kind: JointKind, build_result: Any) -> dict[st
 
 
 def _joint_figures(joint_kind: JointKind, build_result: Any) -> list[Figure]:
+    """Figures of one joint in the report: published comparisons, loops, systems."""
     module = load_tool_module(joint_kind, "figures")
     figures: list[Figure] = module.make_figures(build_result) if module else []
     figures += [

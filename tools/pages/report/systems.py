@@ -24,7 +24,7 @@ from .figure import Figure, Panel, Series
 RESONANCE_FIGURE_SIZE, DECAY_FIGURE_SIZE = (9.6, 4.0), (11.4, 3.8)
 """Sizes [inch] of the pictures of resonance and of free decay."""
 _ENVELOPE_SIDES = ((1.0, "above"), (-1.0, "below"))
-"""Sign and name of both envelopes."""
+"""Sign and name of both envelopes of a decaying vibration."""
 
 
 def resonance_figures(
@@ -50,6 +50,7 @@ def _vibrating_systems(joint: str) -> list[tuple[str, VibratingJoint]]:
 def _resonance_figure(
     name: str, vibrating_joint: VibratingJoint, vibrations: Sequence[FreeVibration], folder: Path
 ) -> Figure:
+    """Figure of the resonance of one system over the load."""
     body, moving = vibrating_joint.vibration_test, vibrating_joint.moving_body.name
     return Figure(
         f"In a system: resonance of the {name.replace('_', ' ')} over its {body.load_axis.name}",
@@ -63,7 +64,7 @@ def _resonance_figure(
 
 
 def ring_down_figures(decays: Mapping[str, Sequence[Decay]], joint: str) -> list[Figure]:
-    """Free-decay figures of all systems with a slipping joint of this kind."""
+    """Figures of the free decay of all systems with a slipping joint of this kind."""
     return [
         _ring_down_figure(name, item, decays[name])
         for name, item in _vibrating_systems(joint)
@@ -72,6 +73,7 @@ def ring_down_figures(decays: Mapping[str, Sequence[Decay]], joint: str) -> list
 
 
 def _ring_down_figure(name: str, vibrating_joint: VibratingJoint, decays: Sequence[Decay]) -> Figure:
+    """Figure of the free decay of one system with a slipping joint."""
     body, moving, (point, *_) = vibrating_joint.vibration_test, vibrating_joint.moving_body.name, decays
     has_law = point.half_eta_loop is not None
     deflection = (
@@ -171,7 +173,7 @@ SystemResults = Mapping[str, Array]
 
 
 def output_units(system: System) -> dict[str, str]:
-    """Units of all outputs and of `time`: {COMPONENT.OUTPUT: unit}."""
+    """Units of all outputs of a system and of `time`: {COMPONENT.OUTPUT: unit}."""
     outputs = {
         f"{name}.{v.name}": v.unit
         for name, part in system.components.items()
@@ -246,6 +248,7 @@ def motion_figures(results_by_system: Mapping[str, tuple[System, SystemResults]]
 
 
 def _motion_figure(system: System, results: SystemResults) -> Figure:
+    """Figure of the simulated motion of an arm."""
     _, wind_up, error = wind_up_and_tip_error(system, results)
     (largest, worst) = np.max(np.abs(wind_up), axis=0), float(np.max(error))
     soft = system.arm.axis_names[int(np.argmax(largest))]

@@ -177,6 +177,7 @@ class _ExchangeSimulation:
         function, component = getattr(self.fmu.dll, name), self.fmu.component
 
         def call(*arguments: object) -> None:
+            """Call the C function; store its first failure."""
             status = function(component, *arguments)
             if status > fmi1Warning:
                 self.first_failure = self.first_failure or FMICallException(function=name, status=status)
@@ -190,6 +191,7 @@ class _ExchangeSimulation:
         """
 
         def callback(*arguments: object) -> None:
+            """Call the Python function; store its first exception."""
             try:
                 python_function(*arguments)
             except Exception as failure:  # fmpy raises bare Exception
@@ -203,7 +205,7 @@ class _EmptySolverInput:
 
     @staticmethod
     def apply(time: float) -> None:
-        pass
+        """Do nothing: `_set_time` has set the inputs."""
 
 
 def _set_stop_time(solver: Any, time: float) -> None:

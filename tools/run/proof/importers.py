@@ -171,5 +171,8 @@ SUPPORTED_FMI_VERSIONS = {"fmpy": "23", "ecos": "23", "libcosim": "2"}
 
 
 def list_interfaces(importer: str) -> list[str]:
-    """FMI interfaces that an importer supports on this platform; model exchange needs the solver of fmpy."""
+    """FMI interfaces (co-simulation, model exchange) that an importer supports on this platform.
+
+    Model exchange needs the solver of fmpy.
+    """
     return [name for name in IMPORTERS[importer] if name != MODEL_EXCHANGE or exchange.has_cvode_solver()]

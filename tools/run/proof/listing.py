@@ -1,4 +1,6 @@
-"""Files that an exporting tool submits to a list of FMI tools, by the FMI cross-check rules, version 4.1.
+"""Files by which a tool enters the list of FMI tools: an FMU with inputs and reference results.
+
+They follow the FMI cross-check rules, version 4.1.
 
 The folder fmus/VERSION/cs/PLATFORM/TOOL/RELEASE/MODEL contains MODEL.fmu, MODEL_in.csv, MODEL_ref.csv,
 MODEL_ref.opt and README.md. The files describe one experiment that needs no parameter set: the first
@@ -25,13 +27,18 @@ if TYPE_CHECKING:
     from fmpy.model_description import ModelDescription
 
 README_NAME = "README.md"
+"""Name of the text file in each folder."""
 LISTING_FILE_KIND = FileKind("listing", (".md",))
+"""Kind of the text file README.md in the folder of a listed FMU."""
 FMI2_PLATFORMS = ("c-code", "darwin64", "linux32", "linux64", "win32", "win64")
 """Platform names of the cross-check rules for FMI 2.0. For FMI 3.0 the names in the FMU are used."""
 
 
 def write_listing(proof: Proof, output_folder: Path, overwrite: bool = False) -> list[Path]:
-    """Write the files of a passed proof into one folder for each platform of the FMU, and return the folders.
+    """Write the folders by which a tool enters the list of FMI tools, from a passed proof of an FMU.
+
+    A passed proof is a check of the FMU in which all outputs agree with their references. There is one folder
+    for each platform of the FMU, with FMU, inputs, reference results and README.md. Returns the folders.
 
     overwrite : overwrite files also in a folder whose README.md was not written by jointfmu
 
@@ -59,7 +66,7 @@ def write_listing(proof: Proof, output_folder: Path, overwrite: bool = False) ->
 
 
 def _select_listed_outcome(proof: Proof) -> ExperimentOutcome:
-    """Select the outcome to be listed: the first validation, else the first listable experiment.
+    """Select the experiment of an FMU to be listed: the first validation, else the first listable one.
 
     Raises ValueError if no experiment is listable.
     """
@@ -73,7 +80,7 @@ def _select_listed_outcome(proof: Proof) -> ExperimentOutcome:
 
 
 def _is_listable(experiment: Experiment) -> bool:
-    """Whether an experiment can be listed.
+    """Whether an experiment of an FMU can enter the list of FMI tools.
 
     Its reference results cover the time from start to stop, and it sets no variables but its inputs.
     """
@@ -102,7 +109,7 @@ def _time_range(experiment: Experiment) -> tuple[float, float]:
 def _make_listing_files(
     proof: Proof, outcome: ExperimentOutcome, description: "ModelDescription"
 ) -> dict[str, bytes]:
-    """Files of the listing, {name: content}, for the chosen outcome."""
+    """{name: content} of the files that describe one experiment in the list of FMI tools."""
     experiment, name = outcome.experiment, _safe_file_name(description.modelName)
     assert experiment.references is not None
     start, stop = _time_range(experiment)
@@ -126,7 +133,7 @@ def _make_listing_files(
 
 
 def _format_readme(proof: Proof, outcome: ExperimentOutcome, description: "ModelDescription") -> str:
-    """Text of README.md for the chosen outcome."""
+    """Text of README.md on a listed experiment: FMU, importer, deviations."""
     experiment, worst, name = outcome.experiment, outcome.worst_point, _safe_file_name(description.modelName)
     assert worst is not None
     tool = description.generationTool or "an unknown tool"

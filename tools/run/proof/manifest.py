@@ -38,7 +38,10 @@ _OTHER_EXPERIMENT_MIME_TYPES = ("application/x-ma-ls-experiments", "application/
 
 @dataclass(frozen=True, slots=True)
 class StartSetting:
-    """Start value of a variable in an experiment; `unit` as stated in the file, empty if not stated."""
+    """Start value of a variable in an experiment.
+
+    unit : as stated in the file; empty if not stated
+    """
 
     value: float | int | bool | str
     unit: str
@@ -46,7 +49,7 @@ class StartSetting:
 
 @dataclass(frozen=True, slots=True)
 class Experiment:
-    """Experiment of an FMU: times, start values, inputs and reference results.
+    """Experiment of an FMU by FMI-LS-REF: times, start values, inputs and reference results.
 
     purpose    : one of PURPOSES
     start, stop, step : start time, stop time and step size [s]; None: not stated
@@ -96,6 +99,7 @@ class RelatedFiles:
             return self._read_all_experiments()
 
     def _read_all_experiments(self) -> list[Experiment]:
+        """Yield the experiments of all related files in the manifest."""
         root = self._read_xml(MANIFEST_PATH)
         if (standard := root.get(f"{{{ATTRIBUTE_NAMESPACE}}}fmi-ls-name")) != STANDARD_NAME:
             raise ValueError(f"{self.fmu}: {MANIFEST_PATH} is of {standard!r}, expected {STANDARD_NAME!r}")
@@ -224,7 +228,7 @@ class RelatedFiles:
         return posixpath.normpath(posixpath.join(posixpath.dirname(base_member), unquote(source_address)))
 
     def _read_text(self, path: str) -> str:
-        """Text of a related file."""
+        """Text of a related file of the FMU."""
         if path not in self.members:
             raise ValueError(f"{self.fmu}: has no {path}, which its manifest or an experiment names")
         try:
@@ -233,7 +237,7 @@ class RelatedFiles:
             raise ValueError(f"{self.fmu}: {path} is not a text; expected UTF-8") from None
 
     def _read_xml(self, path: str) -> Element:
-        """XML root element of a related file."""
+        """XML root element of a related file of the FMU."""
         try:
             return ElementTree.fromstring(self._read_text(path))
         except ElementTree.ParseError as error:
@@ -243,6 +247,7 @@ class RelatedFiles:
 _RELATED_FILE_MIME_TYPES = {"Parameters": SSV_TYPE, "Stimuli": CSV_TYPE, "References": CSV_TYPE}
 """{child element of an experiment: MIME type of the file that it names}."""
 _BOOLEAN_VALUES = {"true": True, "1": True, "false": False, "0": False}
+"""{text in an SSV file: Boolean value}."""
 
 
 def _parse_value(element_name: str, value: str) -> float | int | bool | str:

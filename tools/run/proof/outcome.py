@@ -11,7 +11,7 @@ from .manifest import Experiment
 
 @dataclass(frozen=True, slots=True)
 class WorstPoint:
-    """Point of an output with the largest ratio of error to tolerance.
+    """Point in time at which an output of an FMU is worst: largest ratio of error to tolerance.
 
     time                            : [s]
     computed_value, reference_value : computed and reference value of the output
@@ -31,6 +31,7 @@ class WorstPoint:
 
     @property
     def is_finite(self) -> bool:
+        """Whether the computed value is finite."""
         return bool(np.isfinite(self.computed_value))
 
     @property
@@ -40,12 +41,13 @@ class WorstPoint:
 
     @property
     def is_within_tolerance(self) -> bool:
+        """Whether the error of the output is at most its tolerance."""
         return bool(self.error_ratio <= 1.0)
 
 
 @dataclass(frozen=True, slots=True)
 class ExperimentOutcome:
-    """Outcome of an experiment: the worst point of each output, or an error.
+    """Outcome of an experiment with an FMU: the worst point of each output, or an error.
 
     interface : FMI interface in which the experiment was executed; empty if it was not executed
     worst_points    : worst point of each output
@@ -72,7 +74,10 @@ class ExperimentOutcome:
 
     @property
     def worst_point(self) -> WorstPoint | None:
-        """Point with the largest error over tolerance, of all outputs; None if nothing was compared."""
+        """Point with the largest error over tolerance, of all outputs of the experiment.
+
+        None if nothing was compared.
+        """
         return max(self.worst_points, key=lambda point: point.error_ratio, default=None)
 
     @property
@@ -83,7 +88,7 @@ class ExperimentOutcome:
 
 @dataclass(frozen=True, slots=True)
 class Proof:
-    """Result of all experiments of an FMU.
+    """Proof of an FMU: results of all its experiments in an importer, compared with references.
 
     importer   : name of the importer
     interfaces : FMI interfaces in which experiments were executed
@@ -107,17 +112,21 @@ class Proof:
 
     @property
     def worst_point(self) -> WorstPoint | None:
-        """Point with the largest error over tolerance, of all outcomes; None if nothing was compared."""
+        """Point with the largest error over tolerance, of all experiments of the FMU.
+
+        None if nothing was compared.
+        """
         points = [outcome.worst_point for outcome in self.outcomes if outcome.worst_point]
         return max(points, key=lambda point: point.error_ratio, default=None)
 
     @property
     def has_passed(self) -> bool:
+        """Whether all experiments agree with their references, and start values with the expected ones."""
         return not self.failures
 
     @property
     def failures(self) -> list[str]:
-        """Failures, one line each: start values, errors, experiments with their worst output."""
+        """Failures of the proof, one line each: start values, errors, experiments with their worst output."""
         lines = list(self.start_value_differences)
         if self.outcomes and not self.executed_experiment_count:
             lines.append(f"{self.importer} executes none of the experiments")

@@ -1,4 +1,4 @@
-"""Plan of an experiment: task for an importer, and evaluation of the importer's answer."""
+"""Plan of an experiment with an FMU: task for an importer, and evaluation of the importer's answer."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -82,7 +82,7 @@ class ExperimentPlan:
         return cls(experiment, interface, nominal, make_task_fields(fmu, folder, interface, **values))
 
     def evaluate_importer_answer(self, importer_answer: Mapping[str, Any] | None) -> ExperimentOutcome:
-        """Compare the answer of an importer with the reference results.
+        """Compare the answer of an importer with the reference results of the experiment.
 
         importer_answer : {"rows"} or {"error"} from a `worker`; None if the experiment was not executed
         """
@@ -116,7 +116,7 @@ class ExperimentPlan:
 
 
 def _find_tolerance(experiment: Experiment) -> float:
-    """Relative tolerance [1] of an experiment, or the default."""
+    """Relative tolerance [1] that an experiment states for its reference results, or the default."""
     return DEFAULT_TOLERANCE if experiment.tolerance is None else experiment.tolerance
 
 
@@ -159,5 +159,5 @@ def make_task_fields(fmu: Path, folder: str, interface: str, **other_fields: obj
 
 
 def _first_not_none(*values: Any) -> float:
-    """First value that is not None."""
+    """First of several values that is not None."""
     return float(next(value for value in values if value is not None))

@@ -1,4 +1,4 @@
-"""Result of a proof as text and as one JSON object."""
+"""Result of a proof (check of an FMU against its references) as text and as one JSON object."""
 
 from collections.abc import Iterator, Mapping
 
@@ -8,6 +8,7 @@ from ...common.shown import align_columns
 from .outcome import ExperimentOutcome, Proof, WorstPoint
 
 _POINT_COLUMN_HEADINGS = ("time [s]", "value", "reference", "off by", "allowed")
+"""Headings of the columns that describe the worst point."""
 _EXPERIMENT_TABLE_HEADINGS = (
     "experiment",
     "interface",
@@ -16,11 +17,13 @@ _EXPERIMENT_TABLE_HEADINGS = (
     "worst output",
     *_POINT_COLUMN_HEADINGS,
 )
+"""Headings of the table of experiments."""
 _OUTPUT_TABLE_HEADINGS = ("output", "worst in", "interface", *_POINT_COLUMN_HEADINGS)
+"""Headings of the table of outputs."""
 
 
 def format_lines(proof: Proof) -> Iterator[str]:
-    """Lines of the printed result: table of experiments, table of outputs, failures, summary.
+    """Lines of the printed result of a proof: table of experiments, table of outputs, failures, summary.
 
     Both tables state the worst point of each row.
     """
@@ -57,7 +60,7 @@ def format_lines(proof: Proof) -> Iterator[str]:
 
 
 def format_counts(proof: Proof) -> str:
-    """Number of experiments of each purpose, and number of compared start values, as text."""
+    """Text with the number of experiments of each purpose, and the number of compared start values."""
     experiments = {id(o.experiment): o.experiment for o in proof.outcomes}.values()
     purposes = [experiment.purpose for experiment in experiments]
     ordered = (*EXPERIMENT_PURPOSES, *sorted({*purposes} - {*EXPERIMENT_PURPOSES}))
@@ -66,7 +69,10 @@ def format_counts(proof: Proof) -> str:
 
 
 def format_summary(proof: Proof) -> str:
-    """One line: number of experiments that passed, missed, and were not executed; differing start values."""
+    """Summary of a proof in one line: experiments that passed, missed, and were not executed.
+
+    It also counts start values that differ.
+    """
     excluded = sum(bool(outcome.exclusion_reason) for outcome in proof.outcomes)
     missed = sum(not outcome.has_passed for outcome in proof.outcomes)
     if not proof.outcomes:
@@ -79,7 +85,11 @@ def format_summary(proof: Proof) -> str:
 
 
 def proof_to_json(proof: Proof) -> dict[str, object]:
-    """Result of a proof as one JSON object, with the worst point of each output of each experiment."""
+    """Result of a proof as one JSON object.
+
+    A proof repeats the experiments that an FMU contains, and compares each output with its reference. The
+    object has the worst point of each output: that with the largest error over tolerance.
+    """
     return {
         "fmu": str(proof.fmu),
         "importer": proof.importer,
@@ -95,7 +105,7 @@ def proof_to_json(proof: Proof) -> dict[str, object]:
 
 
 def _experiment_to_json(outcome: ExperimentOutcome) -> dict[str, object]:
-    """Outcome of an experiment as a JSON object."""
+    """Outcome of one experiment of an FMU as a JSON object."""
     return {
         "name": outcome.experiment.name,
         "interface": outcome.interface or None,
@@ -108,7 +118,7 @@ def _experiment_to_json(outcome: ExperimentOutcome) -> dict[str, object]:
 
 
 def _worst_point_to_json(point: WorstPoint) -> Mapping[str, object]:
-    """Worst point of an output as a JSON object."""
+    """Point of an output with the largest error over tolerance, as a JSON object."""
     value = point.computed_value if point.is_finite else None
     return {
         "output": point.output,
@@ -122,7 +132,7 @@ def _worst_point_to_json(point: WorstPoint) -> Mapping[str, object]:
 
 
 def _format_verdict(outcome: ExperimentOutcome) -> str:
-    """Verdict on an experiment, as text."""
+    """Verdict on an experiment, as text: passed, missed, or not executed."""
     if outcome.exclusion_reason:
         return f"not executed: {outcome.exclusion_reason}"
     if not outcome.has_passed:

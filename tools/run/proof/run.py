@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ExpectedFmuContents:
-    """Expected contents of an FMU, from another source than the FMU itself.
+    """Start values and experiments that an FMU should contain, from another source than the FMU itself.
 
     source  : name of the source, for messages
     start_values : {variable: start value}
@@ -40,7 +40,7 @@ class ExpectedFmuContents:
 
 
 def prove(fmu: Path, importer: str = "fmpy", expected_contents: ExpectedFmuContents | None = None) -> Proof:
-    """Execute all experiments in the manifest of an FMU, or in that of `expected_contents`.
+    """Execute the experiments that an FMU contains in an importer; compare outputs with references.
 
     Raises ValueError, one line: no FMU, an FMU that does not run on this platform, no manifest, a broken
     manifest, an importer that is not installed or does not support the FMI version of the FMU.
@@ -115,7 +115,7 @@ def _check_importer(importer: str) -> None:
 def _list_start_value_differences(
     start_values: Mapping[str, object], expected_contents: ExpectedFmuContents
 ) -> list[str]:
-    """A line for each start value of the FMU that differs from the expected one.
+    """List a line for each start value of the FMU that differs from the expected one.
 
     start_values : {variable: start value} of the FMU
     """
@@ -129,7 +129,7 @@ def _list_start_value_differences(
 
 
 def _offered_interfaces(description: "ModelDescription") -> list[str]:
-    """FMI interfaces that an FMU offers."""
+    """FMI interfaces (co-simulation, model exchange) that an FMU offers."""
     kinds = {CO_SIMULATION: description.coSimulation, MODEL_EXCHANGE: description.modelExchange}
     return [name for name, kind in kinds.items() if kind is not None]
 

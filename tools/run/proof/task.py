@@ -13,7 +13,7 @@ REAL_TYPES = ("Real", "Float64")
 
 @dataclass(frozen=True, slots=True)
 class ExperimentTask:
-    """Experiment with an FMU, ready to be executed by an importer.
+    """Task for an importer: experiment with an FMU, ready to be executed.
 
     fmu, folder : path of the FMU, and of the folder where it is unpacked
     interface : FMI interface, one of INTERFACES
@@ -40,7 +40,7 @@ class ExperimentTask:
     comparison_times: Sequence[float] = ()
 
     def inputs_at(self, point_index: int) -> dict[str, float]:
-        """{input: value} at the communication point i; at a jump the value after it."""
+        """Inputs {name: value} at the communication point i; at a jump the value after it."""
         return {name: values[point_index] for name, values in self.inputs.items()}
 
     @property
@@ -57,7 +57,7 @@ class ExperimentTask:
         return size
 
     def mask_unneeded_rows(self, rows: "OutputRows") -> "OutputRows":
-        """Replace rows that are not needed for the comparison by None.
+        """Replace rows of outputs that are not needed for the comparison with references by None.
 
         Rows next to a comparison time, and the first and the last row, are kept.
         """
@@ -71,7 +71,7 @@ class ExperimentTask:
 
 
 OutputRows = list[list[float] | None]
-"""Outputs at each communication point; None if the importer gives none, or they are not needed."""
+"""Outputs at each communication point; None if the importer gives none, or if they are not needed."""
 ExecuteFunction = Callable[[ExperimentTask, list[str]], OutputRows]
 """Function of an importer: (task, messages) -> rows; it appends the messages of the FMU."""
 

@@ -22,7 +22,7 @@ VARIABLE_KINDS = {
 
 
 def variable_kind(variable: "ScalarVariable") -> str:
-    """Kind of a variable: "real", "integer" or "boolean"; ValueError for other types and arrays."""
+    """Kind of an FMU variable: "real", "integer" or "boolean"; ValueError for other types and arrays."""
     if variable.type not in VARIABLE_KINDS or variable.dimensions:
         text = "an array" if variable.dimensions else f"of type {variable.type}"
         raise ValueError(f"{variable.name} is {text}; single real, whole and truth values are compared")
@@ -30,7 +30,7 @@ def variable_kind(variable: "ScalarVariable") -> str:
 
 
 def convert_start_setting(variable: "ScalarVariable", start_setting: StartSetting) -> object:
-    """Convert a stated start value to the type of its variable.
+    """Convert the start value that an experiment states to the type of its variable.
 
     Raises ValueError if its unit is not that of the variable, or if it is not a value of this type.
     """
@@ -51,7 +51,7 @@ def convert_start_setting(variable: "ScalarVariable", start_setting: StartSettin
 
 
 def convert_value(variable: "ScalarVariable", value: float) -> float | int | bool:
-    """Convert a number to real, integer or boolean, the kind of a variable. ValueError if it does not fit."""
+    """Convert a number to the kind of a variable: real, integer or boolean. ValueError if it does not fit."""
     if (kind := variable_kind(variable)) == "real":
         return value
     number = int(value)
@@ -63,7 +63,9 @@ def convert_value(variable: "ScalarVariable", value: float) -> float | int | boo
 def input_values(
     variable: "ScalarVariable", stimuli: TimeSeries, times: Array, takes_value_before_jump: bool
 ) -> list[Any]:
-    """Values of an input at times (n) [s]: real inputs are interpolated linearly, others are held.
+    """Values of an input of an experiment at times (n) [s].
+
+    Real inputs are interpolated linearly, others are held.
 
     takes_value_before_jump : at a jump, take the value before it instead of the value after it; real inputs
         only

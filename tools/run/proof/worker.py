@@ -38,7 +38,7 @@ def main() -> None:
 
 
 def _execute_task(execute_experiment: Any, task_fields: dict[str, Any], log_file: TextIO) -> dict[str, Any]:
-    """Execute a task and return the answer: {"rows", "messages"} or {"error", "messages"}.
+    """Execute a task of an importer and return the answer: {"rows", "messages"} or {"error", "messages"}.
 
     execute_experiment : function of the importer
     log_file           : file with the output of the importer

@@ -22,11 +22,13 @@ WAVEFORMS = ("triangle", "sine")
 DEFAULT_POINTS_PER_CYCLE, DEFAULT_CYCLE_COUNT = 200, 2
 MIN_POINTS_PER_CYCLE, MAX_POINTS_PER_CYCLE = 8, 1_000_000
 MAX_CYCLE_COUNT = 1000
+"""Largest number of load cycles [1]."""
 MAX_AMPLITUDE_RATIO = 1e4
 """Largest amplitude over the nominal value of the input [1]: 10 mm of a relative displacement."""
 WORK_ROUND_OFF_RATIO = 1e-12
 """Work over the area of the loop's bounding box [1] below which the work is round-off."""
 ENERGY_UNIT = units.base_exponents("J")
+"""Exponents of the SI base units of the joule."""
 FORCE_UNITS = (units.base_exponents("N"), units.base_exponents("N.m"))
 """Units of a force and of a torque; the other of two conjugate variables is the motion."""
 LOOP_COLUMN_NAMES = {"m": ("displacement", "force"), "rad": ("angle", "torque")}
@@ -35,7 +37,7 @@ LOOP_COLUMN_NAMES = {"m": ("displacement", "force"), "rad": ("angle", "torque")}
 
 @dataclass(frozen=True, slots=True)
 class CyclicPath:
-    """Path of an input in load cycles: first loading to an amplitude, then cycles about a centre.
+    """Path of an FMU's input in load cycles: first loading to an amplitude, then cycles about a centre.
 
     centre : value of the input at the start and in the middle of the cycles
     shape  : waveform, one of WAVEFORMS
@@ -85,6 +87,7 @@ class HysteresisLoop:
 
     @property
     def _last_cycle(self) -> tuple[Array, Array]:
+        """Motion and force of the last cycle."""
         return self.motion[self.cycle_start :], self.force[self.cycle_start :]
 
     @property
@@ -143,6 +146,7 @@ class HysteresisLoops:
 
     @property
     def messages(self) -> tuple[str, ...]:
+        """Log messages of the FMU in all loops."""
         return tuple(dict.fromkeys(text for loop in self.loops for text in loop.result.messages))
 
     @property
@@ -152,6 +156,7 @@ class HysteresisLoops:
         return {"motion": self.units[0], "force": self.units[1], "secant_stiffness": stiffness, "loss": "J"}
 
     def compute_loop_results(self) -> list[dict[str, float]]:
+        """Results of each loop: {name: value}."""
         return [loop.compute_results() for loop in self.loops]
 
     def format_table(self) -> str:
@@ -254,7 +259,7 @@ def loops_from_results(
 
 
 def input_and_output_units(description: "ModelDescription") -> tuple[dict[str, str], dict[str, str]]:
-    """{name: unit} of the inputs and of the outputs of an fmpy model description."""
+    """Units of an FMU's inputs, {name: unit}, and of its outputs, from the model description of fmpy."""
     inputs, outputs = (
         {v.name: v.unit or "1" for v in description.modelVariables if v.causality == causality}
         for causality in ("input", "output")
@@ -306,7 +311,7 @@ def variable_suffix(variable_name: str) -> str:
 
 
 def _is_energy(first_unit: str, second_unit: str) -> bool:
-    """Whether the product of two units is an energy; the radian is ignored."""
+    """Whether the product of two units is a unit of energy; the radian is ignored."""
     try:
         parts = units.base_exponents(first_unit), units.base_exponents(second_unit)
     except ValueError:

@@ -37,11 +37,11 @@ class RampResult:
 
 
 MAX_RAMP_END = 1e12
-"""Largest absolute end of a ramp [SI]."""
+"""Largest magnitude of the input at the end of a ramp [SI]."""
 
 
 def ramp_points(end: float, step: float) -> Array:
-    """Points of a ramp: 0, step, 2 step, ..., end; the last step may be shorter.
+    """Points of a load ramp: 0, step, 2 step, ..., end; the last step may be shorter.
 
     Raises ValueError if a value is not finite, if |end| is above MAX_RAMP_END, or if the step is zero or has
     the other sign than `end`.
@@ -147,6 +147,7 @@ def _simulate_paths(
     settings: dict[str, object],
     fmu_label: str,
 ) -> RampResult:
+    """Run an unpacked FMU along points of several inputs; all outputs at all points."""
     variables = {v.name: v for v in model_description.modelVariables}
     allowed = [v.name for v in model_description.modelVariables if v.causality == "input"]
     outputs = [v for v in model_description.modelVariables if v.causality == "output"]

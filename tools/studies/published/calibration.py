@@ -48,6 +48,7 @@ def fit_unknowns(
     source = "fitted to " + ", ".join(point.id for point in calibration_points)
 
     def make_parameter_file(log_unknowns: Any) -> ParameterFile:
+        """Parameter file with values of the unknowns, from their logarithms."""
         values = dict(zip(names, np.exp(log_unknowns).tolist(), strict=True))
         return start_file.with_values(values, "calibration", source)
 
@@ -71,7 +72,10 @@ def _residual_function(
     observable_functions: Mapping[str, Callable[..., float | bool]],
     calibration_points: Sequence[PublishedPoint],
 ) -> Callable[[object], list[float]]:
+    """Function of the logarithms of the unknowns: relative errors of the calibration points."""
+
     def residuals(log_unknowns: object) -> list[float]:
+        """Relative errors of the calibration points."""
         values = make_parameter_file(log_unknowns).values
         return [
             observable_functions[p.quantity](values, **p.where) / p.value - 1.0 for p in calibration_points

@@ -13,7 +13,7 @@ from ...common.joint_parts import load_tool_module
 
 @dataclass(frozen=True, slots=True)
 class CalibrationFit:
-    """Fit of parameters to calibration points.
+    """Fit of parameters that a paper does not state to its published numbers (calibration points).
 
     unknowns  : {parameter: start value > 0}; their logarithms are fitted, so they stay positive
     point_ids : ids of the calibration points, as many as unknowns

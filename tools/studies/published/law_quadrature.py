@@ -19,12 +19,14 @@ from scipy.special import ellipe, ellipk
 from scipy.stats import norm
 
 Parameters = Mapping[str, Any]
+"""Values of the parameters of a law, by structured name."""
 Spot = Callable[[float], float]
 """Quantity of one contact spot as a function of its area [m2]."""
 
 _QUADRATURE = {"epsabs": 0.0, "epsrel": 1e-12, "limit": 400}
+"""Settings of the quadrature: relative accuracy and number of subdivisions."""
 _NEGLIGIBLE_LOG = 40.0
-"""Logarithm [1] of the ratio below which a part of an integral is left out: 4e-18."""
+"""Logarithm of the ratio of a whole integral to a part that is left out [1]: 4e-18."""
 _FIRST_STAGE, _SECOND_STAGE = (0.93, 1.136, 1.03, 1.425), (0.94, 1.146, 1.40, 1.263)
 """Kogut and Etsion 2002: area/a_c = m (w/w_c)^n, load/f_c = c (w/w_c)^d as (m, n, c, d)."""
 _FIRST_END, _SECOND_END = 6.0, 110.0
@@ -32,7 +34,7 @@ _FIRST_END, _SECOND_END = 6.0, 110.0
 
 
 def _bodies(p: Parameters) -> tuple[float, float]:
-    """Contact modulus E* and contact shear modulus G' [Pa] of two bodies."""
+    """Contact modulus E* and contact shear modulus G' [Pa] of the two bodies with parameters p."""
     sides = [(p[f"{side}.E"], p[f"{side}.nu"]) for side in ("side1", "side2")]
     return (
         1.0 / sum((1.0 - nu**2) / E for E, nu in sides),
@@ -56,6 +58,7 @@ def _stick_sum(spot: Spot, x: Spot, count: Spot, low: float, high: float) -> flo
     onset = low if x(low) <= 1.0 else exp(brentq(lambda t: x(exp(t)) - 1.0, log(low), log(high), xtol=1e-14))
 
     def integrand(y: float) -> float:  # ln a = ln onset + y^3 removes the cube root at the onset
+        """Integrand after a substitution that removes the cube root at the end of slip."""
         a = onset * exp(y**3)
         return 3.0 * y**2 * spot(a) * max(1.0 - x(a), 0.0) ** (1.0 / 3.0) * count(a)
 
@@ -69,21 +72,29 @@ def _zhao2018(p: Parameters, largest: float) -> dict[str, float]:
     E, shear = _bodies(p)
 
     def eq_3(psi: float) -> float:
+        """Difference of both sides of Eq. 3 for a domain extension factor psi."""
         return psi ** (1.0 - D / 2.0) - (1.0 + psi ** (-D / 2.0)) ** ((D - 2.0) / D) - (2.0 - D) / D
 
     psi = brentq(eq_3, 1.5, 3.0, xtol=1e-15)
 
-    def delta(a: float) -> float:  # Eq. 5
+    def delta(a: float) -> float:
+        """Deformation [m] of a spot of area a, Eq. 5."""
         return 2.0 ** (3.0 - D) * G ** (D - 1.0) * root * pi ** (D / 2.0 - 1.0) * a ** (1.0 - D / 2.0)
 
-    def radius(a: float) -> float:  # Eq. 6
+    def radius(a: float) -> float:
+        """Radius of curvature [m] of a spot of area a, Eq. 6."""
         return a ** (D / 2.0) / (2.0 ** (4.0 - D) * pi ** (D / 2.0) * G ** (D - 1.0) * root)
 
-    def elastic(a: float) -> float:  # Eq. 7
+    def elastic(a: float) -> float:
+        """Elastic load [N] of a spot of area a, Eq. 7."""
         return 4.0 / 3.0 * E * sqrt(radius(a)) * delta(a) ** 1.5
 
     def excess(a: float) -> float:
-        """Logarithm of the two sides of the choice `critical_area`; 0 at the critical area."""
+        """Logarithm of the ratio of both sides of the equation for the critical area, at a spot area a.
+
+        The equation depends on the parameter `critical_area`. The function is 0 at the critical area: root
+        finding.
+        """
         if p["critical_area"] == "continuity":
             return log(elastic(a) / (H * a))
         strength = 0.454 + 0.41 * p["side1.nu"]
@@ -94,10 +105,12 @@ def _zhao2018(p: Parameters, largest: float) -> dict[str, float]:
     else:
         critical = exp(brentq(lambda t: excess(exp(t)), -150.0, 50.0, xtol=1e-14))
 
-    def count(a: float) -> float:  # a' n(a') of Eq. 2
+    def count(a: float) -> float:
+        """Number of spots per unit of ln(area), a' n(a') of Eq. 2."""
         return D / 2.0 * psi ** (1.0 - D / 2.0) * (largest / a) ** (D / 2.0)
 
-    def normal(a: float) -> float:  # Eq. 13, or 2 E* r
+    def normal(a: float) -> float:
+        """Normal stiffness [N/m] of an elastic spot of area a: Eq. 13, or 2 E* r."""
         if p["spot_stiffness"] == "family":
             return 4.0 * E * (3.0 - D) / (3.0 * sqrt(2.0 * pi) * (2.0 - D)) * sqrt(a)
         return 2.0 * E * sqrt(a / (2.0 * pi))
@@ -105,9 +118,11 @@ def _zhao2018(p: Parameters, largest: float) -> dict[str, float]:
     end = min(critical, largest)
 
     def plastic_sum(spot: Spot, exponent: float) -> float:
+        """Sum of a quantity over the plastic spots."""
         return _sum_spots(spot, count, [end * exp(-_NEGLIGIBLE_LOG / exponent), end])
 
     def elastic_sum(spot: Spot) -> float:
+        """Sum of a quantity over the elastic spots."""
         return _sum_spots(spot, count, [critical, largest])
 
     load = plastic_sum(lambda a: H * a, 1.0 - D / 2.0) + elastic_sum(elastic)
@@ -149,32 +164,39 @@ def _hu2023(p: Parameters, largest: float) -> dict[str, float]:
     psi = 5.454 * exp((1.0 - D) / 0.628) + 1.499
     x = p["traction_ratio"]
 
-    def count(s: float) -> float:  # s n(s) of Eq. 17
+    def count(s: float) -> float:
+        """Number of spots per unit of ln(area), s n(s) of Eq. 17."""
         return (D - 1.0) / 2.0 * psi ** (1.5 - D / 2.0) * (largest / s) ** (D / 2.0 - 0.5)
 
     def elastic(s: float) -> float:
+        """Elastic load [N] of a spot of area s, Eq. 9."""
         return 4.0 / 3.0 * E * (s / pi) ** 1.5 / R
 
-    def load(s: float) -> float:  # Eqs. 9, 11, 12, 16
+    def load(s: float) -> float:
+        """Load [N] of a spot of area s in its regime, Eqs. 9, 11, 12, 16."""
         if s <= s_ec:
             return elastic(s)
         if s <= s1:
             return f_ec * c1 * (s / (m1 * s_ec)) ** (d1 / n1)
         return f_ec * c2 * (s / (m2 * s_ec)) ** (d2 / n2) if s <= s2 else H * s
 
-    def normal(s: float) -> float:  # Eqs. 29, 31, 32
+    def normal(s: float) -> float:
+        """Normal stiffness [N/m] of a spot of area s in its regime, Eqs. 29, 31, 32."""
         if s <= s_ec:
             return 2.0 * E * sqrt(s / pi)
         m, n, c, d = _FIRST_STAGE if s <= s1 else _SECOND_STAGE
         return f_ec / first_yield * c * d * (s / (m * s_ec)) ** ((d - 1.0) / n)
 
     def full_stick(s: float) -> float:
+        """Tangential stiffness [N/m] of a spot of area s without slip."""
         return 8.0 * shear * sqrt(s / pi)
 
     def slip(spot_load: Spot) -> Spot:
+        """Function of the spot area: traction ratio t/(mu f) [1] under the shear traction."""
         return lambda s: p["shear_traction"] * s / (p["mu"] * spot_load(s))
 
     def from_zero(spot: Spot, exponent: float) -> float:
+        """Sum of a quantity over all spots, from zero area on."""
         low = min(s_ec, largest) * exp(-_NEGLIGIBLE_LOG / (exponent + 0.5 - D / 2.0))
         return _sum_spots(spot, count, [low, *(min(e, largest) for e in (s_ec, s1, s2)), largest])
 
@@ -217,10 +239,12 @@ def _yu2022(p: Parameters, largest: float) -> dict[str, float]:
     f1, f2 = second / (first * slender), pi * sqrt(second) / (2.0 * first**1.5 * slender)  # Eqs. 22-23
     exponent = slender / 2.0 * (p["surface1.D"] + p["surface2.D"]) / 2.0  # Eqs. 42-43
 
-    def count(a: float) -> float:  # lambda times Eq. 44, times a
+    def count(a: float) -> float:
+        """Number of spots per unit of ln(area): lambda times Eq. 44, times a."""
         return p["lambda"] * exponent * (largest / a) ** exponent
 
-    def radius(a: float) -> float:  # R_m of Eqs. 12, 13, 15
+    def radius(a: float) -> float:
+        """Mean radius of curvature R_m [m] of a spot of area a, Eqs. 12, 13, 15."""
         curvature = 0.0
         for side, sign in (("surface1", -1.0), ("surface2", 1.0)):
             D, G = p[f"{side}.D"], p[f"{side}.G"]
@@ -228,13 +252,16 @@ def _yu2022(p: Parameters, largest: float) -> dict[str, float]:
             curvature += 2.0 ** (4.0 - D) * pi ** (D / 2.0) * G ** (D - 1.0) * root / axis
         return 2.0 / curvature
 
-    def first_yield(a: float) -> float:  # Eq. 27
+    def first_yield(a: float) -> float:
+        """Deformation at first yield [m] of a spot of area a, Eq. 27."""
         return first * second * radius(a) * (k * H / E) ** 2
 
     def ratio(a: float) -> float:
+        """Area of a spot over the area at which a spot of its curvature yields first [1]."""
         return a / (f1 * pi * radius(a) * first_yield(a))
 
     def edge(limit: float) -> float:
+        """Spot area [m2] at which `ratio` reaches a limit: the end of a stage."""
         return exp(brentq(lambda t: log(ratio(exp(t)) / limit), -250.0, 250.0, xtol=1e-13))
 
     geometric = p["plastic_area"] == "geometric"
@@ -248,6 +275,7 @@ def _yu2022(p: Parameters, largest: float) -> dict[str, float]:
         return (ratio(a), c, d) if geometric else ((ratio(a) / m) ** (1.0 / n), c, d)
 
     def load(a: float) -> float:
+        """Load [N] of a spot of area a in its stage."""
         if a <= a_npc:
             return float(H * a)
         hertz = f2 * 4.0 / 3.0 * E * sqrt(radius(a))
@@ -257,6 +285,7 @@ def _yu2022(p: Parameters, largest: float) -> dict[str, float]:
         return float(hertz * first_yield(a) ** 1.5 * c * w**d)
 
     def normal(a: float) -> float:
+        """Normal stiffness [N/m] of a spot of area a in its stage."""
         if a > a_nec:
             return float(2.0 * f2 * E * sqrt(a / (f1 * pi)))
         w, c, d = deformation(a)
@@ -281,6 +310,7 @@ def _roughness(p: Parameters, pressure: float) -> dict[str, float]:
     mu, x = p["mu"], p["traction_ratio"]
 
     def stiffness(pressure: float) -> float:
+        """Normal stiffness [N/m] of the nominal area at a pressure [Pa]."""
         few = 0.3 * (pressure * A_0 / (E * h * wave)) ** (-hurst / (1.0 + hurst))
         return float(pressure * A_0 / h * (1.0 / gamma + few))
 
@@ -325,6 +355,7 @@ def _interface_table(p: Parameters, pressure: float) -> dict[str, float]:
     mu, x, n = p["mu"], p["traction_ratio"], (y[-1] - y[0]) / (u[-1] - u[0])
 
     def shear(force: float) -> float:
+        """Tangential displacement at a shear force, for the loss factor."""
         return (1.0 - (1.0 - force) ** (1.0 - n)) / (1.0 - n)
 
     # Masing's loop between -x and x, at forces over mu F
@@ -344,6 +375,7 @@ def _catalogue(p: Parameters, wind_up: float) -> dict[str, float]:
     second = first + (p["T2"] - p["T1"]) / p["K2"]
 
     def stiffness(angle: float) -> float:
+        """Stiffness [N.m/rad] of the catalogue lines with smoothed corners at an angle [rad]."""
         value = p["K1"]
         for corner, before, after in ((first, "K1", "K2"), (second, "K2", "K3")):
             t = min(max((angle / corner - 1.0 + p["corner"]) / (2.0 * p["corner"]), 0.0), 1.0)
@@ -357,7 +389,11 @@ def _catalogue(p: Parameters, wind_up: float) -> dict[str, float]:
 
 
 def _table(p: Parameters, wind_up: float) -> dict[str, float]:
-    """Torque [N.m] and stiffness [N.m/rad] of a measured table: PCHIP, then continuous second derivatives."""
+    """Torque [N.m] and stiffness [N.m/rad] of a drive with a measured torque-angle table, at a wind-up [rad].
+
+    The curve is a quintic Hermite spline. The stiffnesses at the points are those of PCHIP; where it stays
+    monotone, the second derivative is then made continuous.
+    """
     x, y = (np.array([0.0, *p[name]]) for name in ("table.angle", "table.torque"))
     odd = PchipInterpolator(np.concatenate([-x[:0:-1], x]), np.concatenate([-y[:0:-1], y]))
     stiffness = odd(x, 1)
@@ -370,6 +406,7 @@ def _table(p: Parameters, wind_up: float) -> dict[str, float]:
 
 
 _STEEL = {"side1.E": 2.06e11, "side1.nu": 0.26, "side2.E": 2.19e11, "side2.nu": 0.3}
+"""Elastic constants of the two bodies in several cases."""
 _ZHAO = {
     "surface.D": 1.42,
     "surface.G": 1.21e-8,
@@ -386,6 +423,7 @@ _ZHAO = {
     "critical_area": "continuity",
     "spot_stiffness": "hertz",
 }
+"""Parameters of the cases of Zhao 2018."""
 _HU = {
     "surface.D": 2.5304,
     "surface.G": 2.4248e-7,
@@ -401,6 +439,7 @@ _HU = {
     "traction": "ratio",
     "reading": "corrected",
 }
+"""Parameters of the cases of Hu 2023."""
 _YU = {
     "surface1.D": 1.46,
     "surface1.G": 1e-10,
@@ -417,6 +456,7 @@ _YU = {
     "rigid_flat": True,
     "plastic_area": "geometric",
 }
+"""Parameters of the cases of Yu 2022."""
 _ROUGHNESS = {
     "h": 1.5e-6,
     "gamma": 0.45,
@@ -429,6 +469,7 @@ _ROUGHNESS = {
     "traction_ratio": 0.3,
     "A_0": 1e-3,
 }
+"""Parameters of the cases of the law `roughness`."""
 _INTERFACE_TABLE = {
     "table.pressure": [1e5, 4e5, 1e6, 5e6, 2e7],
     "table.stiffness": [4e11, 1.1e12, 1.6e12, 1.6e12, 9e12],
@@ -438,12 +479,16 @@ _INTERFACE_TABLE = {
     "traction_ratio": 0.3,
     "A_0": 1e-3,
 }
+"""Parameters of the cases of the interface law `table`."""
 _CATALOGUE = {"K1": 4700.0, "K2": 6100.0, "K3": 7100.0, "T1": 2.0, "T2": 6.9, "corner": 0.04}
+"""Parameters of the case of a catalogue drive."""
 _TABLE = {
     "table.torque": [0.5, 1.0, 2.0, 4.0, 7.0, 10.0],
     "table.angle": [2.2e-4, 4.1e-4, 7.2e-4, 1.2e-3, 1.75e-3, 2.2e-3],
 }
+"""Parameters of the case of a measured drive."""
 _Case = tuple[str, Callable[[Parameters, float], dict[str, float]], Parameters, Sequence[float]]
+"""Case of the reference table: law, function, parameters, arguments."""
 _CASES: Sequence[_Case] = (
     ("zhao2018", _zhao2018, _ZHAO, (4e-9, 2e-8, 1e-6, 1e-4)),
     ("zhao2018", _zhao2018, _ZHAO | {"critical_area": "printed"}, (3e-6, 1e-4)),
@@ -467,6 +512,7 @@ _HEAD = """\
 #   python -m jointfmu_tools.studies.published.law_quadrature
 # SI units; the first column of each case is the argument.
 """
+"""Head of the file models/reference/laws.toml."""
 
 
 def format_reference_table() -> Iterator[str]:

@@ -19,6 +19,7 @@ from ...common.shown import align_columns
 REFERENCE_TOLERANCE = 1e-8
 """Relative tolerance [1]: the quadrature is accurate to 1e-11, the inversion of the load to 1e-12."""
 _HEADINGS = ("law", "quantity", "values", "largest deviation", "allowed", "at", "verdict")
+"""Headings of the printed table."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,18 +96,19 @@ def _evaluate_midline(law: str, parameters: Mapping[str, Any], wind_up: Array) -
 
 
 def _largest_deviation(comparisons: Sequence[LawComparison]) -> LawComparison:
+    """Comparison with the largest relative deviation."""
     errors = np.abs([c.error for c in comparisons])
     worst = comparisons[int(np.argmax(np.where(np.isnan(errors), np.inf, errors)))]
     return LawComparison(**asdict(worst) | {"value_count": len(comparisons)})
 
 
 def missed_quantities(comparisons: Sequence[LawComparison]) -> list[str]:
-    """Quantities LAW.NAME whose deviation is outside the tolerance."""
+    """Names LAW.QUANTITY whose deviation from the reference value is outside the tolerance."""
     return [f"{c.law}.{c.quantity}" for c in comparisons if not c.has_passed]
 
 
 def format_law_table(comparisons: Sequence[LawComparison]) -> str:
-    """Format the comparison as a table in text."""
+    """Format the comparison of laws with reference values as a table in text."""
     rows = [
         (
             *(c.law, c.quantity, str(c.value_count), f"{c.error:+.1e}", f"{REFERENCE_TOLERANCE:.0e}"),
@@ -119,7 +121,7 @@ def format_law_table(comparisons: Sequence[LawComparison]) -> str:
 
 
 def format_law_summary(comparisons: Sequence[LawComparison]) -> str:
-    """Summary in one line: number of laws and values, missed quantities."""
+    """Summary of the comparison in one line: number of laws and values, missed quantities."""
     laws = dict.fromkeys(c.law for c in comparisons)
     values = sum(c.value_count for c in comparisons)
     return (

@@ -31,8 +31,9 @@ CALIBRATION_TOLERANCE = 1e-6
 """Relative tolerance of a calibration point [1]: the fits are exact apart from rounding."""
 
 _POINTS_PER_GUESS_RULE = {"constant": 1, "power law": 2, "offset": 3, "proportion": 3, "growth": 3}
-"""{rule of a trivial guess: number of points that it needs}."""
+"""Number of calibration points that each rule of a trivial guess needs: {rule: number}."""
 _POWER_LAW_GUESS_RULES = ("power law", "growth")
+"""Rules of a trivial guess that use a power law of an argument."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -75,7 +76,7 @@ class Guess:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PublishedPoint:
-    """Published number or claim.
+    """Number that a paper publishes, or claim of the paper, to compare with the computed one.
 
     quantity  : name of the computed quantity, a key of `PublishedNumbers.observable_functions`
     where     : {argument of the quantity: value [SI]}
@@ -126,6 +127,7 @@ def read_points(paper: str) -> list[PublishedPoint]:
 
 
 def _make_point(paper: str, joint: str, entry: dict[str, Any]) -> PublishedPoint:
+    """Published number from its entry in the file of a paper."""
     guess = {"guess": Guess(**entry["guess"])} if "guess" in entry else {}
     return PublishedPoint(paper=paper, joint=joint, **(entry | guess))
 
@@ -138,6 +140,7 @@ def compute_trivial_guesses(points: Sequence[PublishedPoint]) -> dict[str, float
     known = {p.id: p for p in points}
 
     def find_value(point_id: str, requesting_ids: tuple[str, ...]) -> float:
+        """Value of a calibration point, or the guess of another point."""
         point = known.get(point_id)
         if point is not None and point.role == "calibration":
             return float(point.value)
@@ -148,6 +151,7 @@ def compute_trivial_guesses(points: Sequence[PublishedPoint]) -> dict[str, float
         return evaluate_guess(point, point.guess, (*requesting_ids, point_id))
 
     def evaluate_guess(point: PublishedPoint, rule: Guess, requesting_ids: tuple[str, ...]) -> float:
+        """Trivial guess of a point by a rule."""
         a, *more = (find_value(name, requesting_ids) for name in rule.points)
         if rule.rule in _POWER_LAW_GUESS_RULES:
             x, x_a, *others = (p.where[rule.over] for p in (point, *(known[name] for name in rule.points)))

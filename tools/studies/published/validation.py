@@ -17,6 +17,7 @@ _TABLE_HEADINGS = (
     *("paper", "point", "unit", "published", "computed", "error", "tolerance"),
     *("guess", "its error", "nearer", "number", "role", "verdict"),
 )
+"""Headings of the printed table."""
 _MAX_ROUNDING_RATIO = 1e-6
 """Error over tolerance [1] below which an error is displayed as zero: it is rounding."""
 
@@ -42,14 +43,20 @@ class ValidatedPoint:
 
     @property
     def nearer_estimate(self) -> str:
-        """Estimate nearer to the published value: `law` (computed value), `guess`; empty without a guess."""
+        """Which estimate is nearer to the published value: `law` (computed value) or `guess`.
+
+        Empty without a guess.
+        """
         if self.guess_error is None:
             return ""
         return "law" if abs(self.error) < abs(self.guess_error) else "guess"
 
     @property
     def verdict(self) -> str:
-        """`pass` or `miss`; for a point that tests nothing `no test`, or `no test, moved` for a miss."""
+        """Verdict on the point: `pass` or `miss`.
+
+        For a point that tests nothing: `no test`, or `no test, moved` for a miss.
+        """
         if self.point.role in UNTESTED_ROLES:
             return "no test" if self.has_passed else "no test, moved"
         return "pass" if self.has_passed else "miss"
@@ -82,6 +89,7 @@ def compare_point(
 
 
 def _point_error(point: PublishedPoint, value: float) -> float:
+    """Error of a value of a published number: relative, or in its unit."""
     return (value - point.value) / (1.0 if point.absolute else abs(point.value))
 
 
@@ -104,7 +112,10 @@ def validate(parameter_sets: Mapping[str, ParameterFile] | None = None) -> list[
 
 
 def missed_points(validated_points: Sequence[ValidatedPoint]) -> list[ValidatedPoint]:
-    """Points outside their tolerance, without calibration points and points met by construction."""
+    """Published points whose computed value is outside the tolerance.
+
+    Calibration points and points met by construction are left out.
+    """
     return [row for row in validated_points if row.point.role not in UNTESTED_ROLES and not row.has_passed]
 
 
@@ -120,7 +131,7 @@ class PublishedPointCounts:
     guessed        : {role: number of points with a trivial guess}
     nearer         : {role: number of points to which the law is nearer than the guess}
     contradictions : ids of claims that the equations of the same paper contradict
-    missed         : ids of `missed_points`
+    missed         : ids of points outside their tolerance, see `missed_points`
     """
 
     numbers: int
@@ -141,6 +152,7 @@ def count_points(validated_points: Sequence[ValidatedPoint]) -> PublishedPointCo
     guessed = [row for row in validated_points if row.nearer_estimate]
 
     def count_by_role(points: Sequence[ValidatedPoint]) -> dict[str, int]:
+        """Number of points of each role."""
         found = Counter(row.point.role for row in points)
         return {role: found[role] for role in ROLES}
 
@@ -158,11 +170,12 @@ def count_points(validated_points: Sequence[ValidatedPoint]) -> PublishedPointCo
 
 
 def format_table(validated_points: Sequence[ValidatedPoint]) -> str:
-    """Format the comparison as a table in text."""
+    """Format the comparison of published with computed numbers as a table in text."""
     return "\n".join(align_columns([_TABLE_HEADINGS, *map(_format_cells, validated_points)]))
 
 
 def _format_cells(validated_point: ValidatedPoint) -> tuple[str, ...]:
+    """Format the cells of the table for one published point."""
     p = validated_point.point
     if isinstance(p.value, bool):
         shown = (format_claim(validated_point), str(validated_point.computed_value).lower(), "-", "-")
@@ -195,14 +208,17 @@ def _format_cells(validated_point: ValidatedPoint) -> tuple[str, ...]:
 
 
 def format_error(point: PublishedPoint, error: float) -> str:
-    """Format an error: in per cent, or in the unit of the point if its tolerance is absolute."""
+    """Format the error of a computed value: in per cent, or in the unit of the point.
+
+    The unit is used if the tolerance is absolute.
+    """
     scale, unit = _error_scale(point)
     small = abs(error) <= _MAX_ROUNDING_RATIO * point.tolerance
     return ("0" if small else f"{scale * error:+.3g}") + unit
 
 
 def format_tolerance(point: PublishedPoint) -> str:
-    """Format a tolerance, in the unit of `format_error`."""
+    """Format the tolerance of a published point, in the unit of `format_error`."""
     scale, unit = _error_scale(point)
     return f"{scale * point.tolerance:.3g}{unit}"
 
@@ -221,7 +237,10 @@ def format_claim(validated_point: ValidatedPoint) -> str:
 
 
 def format_summary(validated_points: Sequence[ValidatedPoint]) -> str:
-    """Summary in one line: counts by role, how often the law is nearer than the guess, missed points."""
+    """Summary of the comparison in one line.
+
+    It counts points by role, how often the law is nearer than the guess, and missed points.
+    """
     found = count_points(validated_points)
     roles = ", ".join(
         f"{n} {role}" + ("" if found.met[role] == n else f" ({found.met[role]} met)")

@@ -78,6 +78,7 @@ def _submit_jobs(client: Any, key: str, jobs: Sequence[Sequence[Run]]) -> Iterat
     waiting, submitted, lost = iter(jobs), dict[str, Sequence[Run]](), Counter[int]()
 
     def submit(job: Sequence[Run]) -> object:
+        """Submit a job to the cluster, and remember it."""
         future = client.submit(run_on_dask_worker, key, job, pure=False)
         submitted[future.key] = job
         return future

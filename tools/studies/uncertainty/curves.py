@@ -1,4 +1,7 @@
-"""Quantities of a joint along a load ramp. Its tool module `uncertainty` states them."""
+"""Quantities of a joint along a load ramp, for uncertainty studies.
+
+Its tool module `uncertainty` states them.
+"""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -15,7 +18,7 @@ from ...common.joint_parts import load_tool_module
 
 
 class JointSample(Protocol):
-    """Joint with the parameters of one sample."""
+    """Joint with the parameters of one sample of an uncertainty study."""
 
     @property
     def parameters(self) -> Any:
@@ -45,7 +48,7 @@ class DerivedOutput:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LoadCurves:
-    """Quantities of a joint along a load ramp.
+    """Quantities of a kind of joint along a load ramp, which a study computes for each sample.
 
     model    : name of the FMU that is evaluated
     load     : the ramped input
@@ -73,7 +76,7 @@ class LoadCurves:
 
     @property
     def units(self) -> dict[str, str]:
-        """{quantity: unit}."""
+        """Units of all quantities: {quantity: unit}."""
         return {
             v.name: v.unit for v in (*self.outputs, *(quantity.variable for quantity in self.derived_outputs))
         }
@@ -92,7 +95,7 @@ def load_curves(kind: JointKind) -> LoadCurves:
 
 
 def spline_weights(knots: Array, points: Array, derivative: int = 0) -> Array:
-    """Matrix (points, knots) that maps values of a cubic spline at its knots to its values at points.
+    """Matrix (points, knots) that gives values of a cubic spline at points from its values at knots.
 
     derivative : order of the derivative; -1: integral from the first knot
 
@@ -103,6 +106,7 @@ def spline_weights(knots: Array, points: Array, derivative: int = 0) -> Array:
 
 @lru_cache(maxsize=16)
 def _spline_weights(knots: bytes, points: bytes, derivative: int) -> Array:
+    """Matrix of `spline_weights` for rounded knots and points, cached."""
     from scipy.interpolate import CubicSpline  # takes most of the start of a process that runs FMUs
 
     x = np.frombuffer(knots)

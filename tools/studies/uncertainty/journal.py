@@ -25,13 +25,13 @@ from jointfmu.files.writing import ensure_folder, write_text
 
 STUDY_FILE, RUNS_FILE, BANDS_FILE = "study.json", "runs.jsonl", "bands.csv"
 SOBOL_RUNS_FILE = "index_runs.jsonl"
-"""Further runs, for Sobol' indices."""
+"""Name of the file with further runs, for Sobol' indices."""
 LOCKED_BYTE_POSITION = 1 << 40
 """Position of the locked byte in the file of runs [byte], beyond all runs."""
 
 
 def sha256_text(data: bytes) -> str:
-    """SHA-256 of data, as hexadecimal text."""
+    """SHA-256 digest of bytes, as hexadecimal text."""
     return hashlib.sha256(data).hexdigest()
 
 
@@ -181,7 +181,7 @@ def _read_lines(path: Path) -> Iterator[tuple[dict[str, Any], int]]:
 
 
 def _row_error(path: Path, row: int, reason: str) -> ValueError:
-    """Error for a row that is not a run of the study."""
+    """Error for a row of the file of runs that is not a run of the study."""
     return ValueError(
         f"{path}: row {row}: {replace_unprintable(reason)[:200]}; expected a run as the command wrote "
         "it: delete "
@@ -239,7 +239,7 @@ def _format_value(value: object) -> str:
 
 
 def _lock_file(handle: int) -> None:
-    """Lock a file for this process until it is closed; OSError if another process has locked it."""
+    """Lock the file of runs for this process until it is closed; OSError if another process has locked it."""
     if sys.platform == "win32":
         import msvcrt
 

@@ -21,14 +21,14 @@ from .worker import LOAD_INTERVAL_MEANING, JointRamp, RampEvaluator
 INTERVAL_SETTING = "interval"
 """Setting that stands for the interval stated in the parameter file: its range, or the text of its source."""
 _INPUTS_PREFIX = "inputs."
-"""Prefix of the start values of inputs in a parameter file."""
+"""Prefix of the names of start values of inputs in a parameter file."""
 _INTERVAL_PATTERN = re.compile(r"\binterval ([-+.\de]+) to ([-+.\de]+)")
 """Interval in the text of a source: its two ends."""
 
 
 @dataclass(frozen=True, slots=True)
 class UncertaintyProblem:
-    """Uncertainty study of a joint or an FMU.
+    """Uncertainty study of a joint or an FMU: uncertain parameters, load ramp, evaluation of a run.
 
     title     : kind of the joint, or name of the FMU file
     ramped_input : the ramped input, called the load
@@ -51,7 +51,7 @@ class UncertaintyProblem:
 
     @property
     def variable_units(self) -> dict[str, str]:
-        """{load or output: unit}."""
+        """Units of the load and of the outputs: {variable: unit}."""
         return {self.ramped_input.name: self.ramped_input.unit, **self.units}
 
     def list_runs(self, points: Array) -> list[dict[str, Any]]:
@@ -70,7 +70,7 @@ class UncertaintyProblem:
 def state_problem(
     file: ParameterFile, settings: Mapping[str, object], ramp_end: float | None, ramp_point_count: int
 ) -> UncertaintyProblem:
-    """State the problem of a parameter file and settings.
+    """State the uncertainty study of a parameter file: load ramp, and settings with distributions.
 
     settings         : {name: value or text of a distribution}
     ramp_end         : end of the load ramp; None: end of the joint's law, or of the file

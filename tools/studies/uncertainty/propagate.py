@@ -32,7 +32,8 @@ class Bands:
     loads     : nominal loads (m)
     quantiles : {output: (len(QUANTILES), m)}
     mean, standard_deviation : mean and standard deviation, {output: (m)}
-    nominal   : outputs for the values of the parameter file, or the start values of the FMU, {output: (m)}
+    nominal   : nominal outputs: those for the values of the parameter file, or the start values of the FMU,
+                {output: (m)}
     sampled_outputs : outputs of all samples
     refused_samples : the samples that the law refuses
     units     : {output: unit}
@@ -68,7 +69,7 @@ class Bands:
 def compute_bands(
     problem: UncertaintyProblem, points: Array, execution: Execution = IN_MEMORY_EXECUTION
 ) -> Bands:
-    """Bands of all outputs, from points (n, d) of the unit cube.
+    """Bands (distribution along the ramp) of all outputs, from points (n, d) of the unit cube.
 
     Raises RuntimeError if the law refuses all samples; ValueError, RuntimeError as `evaluate_runs`.
     """
@@ -98,7 +99,9 @@ def compute_bands(
 
 
 def _statistics(row: SinglePrecisionArray, accepted: Mask) -> Array:
-    """Mean, standard deviation and quantiles (linear between samples) of one output at one load.
+    """Mean, standard deviation and quantiles of one output at one load, over the samples.
+
+    Quantiles are linear between samples.
 
     row, accepted : output (n), and mask (n) of the samples to be used
     """
@@ -108,7 +111,7 @@ def _statistics(row: SinglePrecisionArray, accepted: Mask) -> Array:
 
 
 def summarise_refusals(problem: UncertaintyProblem, points: Array, samples: SampledOutputs) -> RefusedSamples:
-    """Refused samples: their number, and the first one with the error message of the law."""
+    """Summary of the samples that the law refuses: their number, and the first one with the error message."""
     if not samples.errors:
         return RefusedSamples(0, {}, "")
     first, reason = next(iter(samples.errors.items()))
@@ -126,14 +129,14 @@ def sample_designs(problem: UncertaintyProblem, count: int, seed: int) -> tuple[
 
 
 MAX_INDEX_LOADS = 21
-"""Maximum number of loads along the ramp at which Sobol' indices are computed."""
+"""Largest number of loads along the ramp at which Sobol' indices are computed [1]."""
 
 
 @dataclass(frozen=True, slots=True)
 class SobolIndices:
     """First-order and total Sobol' indices (s, d) of s outputs with respect to d parameters.
 
-    first_half, total_half : half widths (s, d) of their 95 % confidence intervals
+    first_half, total_half : half widths (s, d) of the 95 % confidence intervals of first and total
     """
 
     first: Array

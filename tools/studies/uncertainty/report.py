@@ -15,11 +15,11 @@ if TYPE_CHECKING:
 
 
 MAX_TABLE_ROWS = 6
-"""Maximum number of loads in the printed table."""
+"""Largest number of loads in the printed table [1]."""
 
 
 def select_table_loads(problem: UncertaintyProblem) -> list[float]:
-    """Loads above zero in the printed table."""
+    """Loads above zero of the ramp that the printed table shows."""
     return [float(load) for load in problem.loads[_select_table_indices(problem.loads)] if load > 0.0]
 
 
@@ -46,7 +46,7 @@ def format_bands_csv(problem: UncertaintyProblem, bands: Bands) -> str:
 
 
 def as_json(problem: UncertaintyProblem, bands: Bands, sensitivity: Sensitivity | None) -> dict[str, object]:
-    """Bands, refused samples and Sobol' indices as one JSON object."""
+    """Results of a study as one JSON object: bands, refused samples and Sobol' indices."""
     outputs = {
         name: {
             "unit": unit,
@@ -76,6 +76,7 @@ def as_json(problem: UncertaintyProblem, bands: Bands, sensitivity: Sensitivity 
 
 
 def _indices_json(sensitivity: Sensitivity) -> dict[str, object]:
+    """JSON object of the Sobol' indices at all loads."""
     numbers = ("first", "first_half", "total", "total_half")
     return {
         "rows": sensitivity.base_sample_count,
@@ -91,7 +92,7 @@ def _indices_json(sensitivity: Sensitivity) -> dict[str, object]:
 
 
 def format_table(problem: UncertaintyProblem, bands: Bands, sensitivity: Sensitivity | None) -> str:
-    """Printed table: bands at a few loads, and Sobol' indices at the end of the ramp."""
+    """Printed table of a study: bands at a few loads, and Sobol' indices at the end of the ramp."""
     lines = []
     load_indices = _select_table_indices(bands.loads)
     quantile_indices = {q: QUANTILES.index(q) for q in (0.05, 0.5, 0.95)}
@@ -137,6 +138,7 @@ def _indices_table(
 
 
 _COLOURS = (plots.BLUE, plots.RED, plots.GREEN, "#b8860b", "#7b4fa3", "#3a9ca6", plots.GREY, "#a65628")
+"""Colours of the parameters in plots."""
 
 
 def draw_bands_and_indices(path: Path, bands: Bands, sensitivity: Sensitivity | None, load: str) -> None:
@@ -181,7 +183,10 @@ def _draw_distribution(axes: "Axes", bands: Bands, name: str, label: str) -> Non
 
 
 def _draw_indices(axes: "Axes", sensitivity: Sensitivity, name: str, load: str, legend: bool) -> None:
-    """Draw the Sobol' indices of an output over the load."""
+    """Draw the Sobol' indices of an output over the load.
+
+    legend : whether to draw the names of the parameters
+    """
     indices = sensitivity.outputs[name]
     for i, parameter in enumerate(sensitivity.parameter_names):
         colour = _COLOURS[i % len(_COLOURS)]

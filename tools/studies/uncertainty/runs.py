@@ -17,7 +17,9 @@ from . import journal
 from .worker import Entry, RampEvaluator, Run, Settings, killed_entry, run_job
 
 Mask = NDArray[np.bool_]
+"""Boolean array: which runs are selected."""
 SinglePrecisionArray = NDArray[np.float32]
+"""Array of numbers in single precision, to save memory."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +55,7 @@ class SampledOutputs:
 
     @property
     def accepted(self) -> Mask:
-        """Mask (n) of the runs that did not fail."""
+        """Mask (n) of the runs that did not fail, for statistics."""
         mask = np.ones(next(iter(self.outputs.values())).shape[1], dtype=bool)
         mask[list(self.errors)] = False
         return mask
@@ -83,6 +85,7 @@ def evaluate_runs(
     errors: dict[int, str] = {}
 
     def collect_entry(entry: Entry) -> None:
+        """Store the outputs, or the error, of a finished run."""
         if "error" in entry:
             errors[entry["run"]] = entry["error"]
             return
@@ -108,6 +111,7 @@ def evaluate_runs(
 
 @contextmanager
 def _open_journal(folder: Path | None, run_count: int, file_name: str) -> Iterator[journal.Journal | None]:
+    """Context with the journal of a study's folder; None without a folder."""
     if folder is None:
         yield None
     else:
@@ -118,7 +122,7 @@ def _open_journal(folder: Path | None, run_count: int, file_name: str) -> Iterat
 def _write_to_journal(
     finished_jobs: Iterable[Sequence[Entry]], journal_file: journal.Journal | None
 ) -> Iterator[Entry]:
-    """Write the entries of each finished job to the journal, and yield them."""
+    """Write the journal entries of each finished job to the file of runs, and yield them."""
     for entries in finished_jobs:
         if journal_file:
             journal_file.append_entries(*entries)
@@ -128,7 +132,7 @@ def _write_to_journal(
 def _execute_runs(
     evaluator: RampEvaluator, pending_runs: Sequence[Run], execution: Execution
 ) -> Generator[Sequence[Entry]]:
-    """Do runs, and yield the journal entries of each job when it ends."""
+    """Do runs of a study, and yield the journal entries of each job when it ends."""
     size = evaluator.runs_per_job
     jobs = [pending_runs[i : i + size] for i in range(0, len(pending_runs), size)]
     if not jobs:
@@ -144,7 +148,7 @@ def _execute_runs(
 def _run_locally(
     evaluator: RampEvaluator, jobs: Sequence[Sequence[Run]], workers: int | None
 ) -> Generator[Sequence[Entry]]:
-    """Do jobs on this machine, and yield the journal entries of each job when it ends.
+    """Do jobs (groups of runs) on this machine, and yield the journal entries of each job when it ends.
 
     jobs : runs of each job, which one process does one after the other
 

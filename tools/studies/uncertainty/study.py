@@ -37,7 +37,9 @@ DISTRIBUTION_FORMS = (
     "VALUE, LOW..HIGH, VALUE+-PERCENT%, loguniform(LOW, HIGH), normal(MEAN, SD), "
     "lognormal(MEDIAN, FACTOR), triangular(LOW, MODE, HIGH)"
 )
+"""Allowed forms of the text of a distribution, for error messages."""
 _DISTRIBUTION_CALL_PATTERN = re.compile(r"(\w+)\((.*)\)")
+"""Pattern of a distribution with arguments: NAME(ARGUMENTS)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +56,7 @@ class UncertainParameter:
 
     @property
     def support(self) -> tuple[float, float]:
-        """Ends of the support of the distribution."""
+        """Lower and upper end of the values that the distribution allows."""
         low, high = self.distribution.support()
         return float(low), float(high)
 
@@ -95,11 +97,13 @@ def _parse_distribution(text: str, file_value: float | None) -> Any:
 
 
 def _uniform(low: float, high: float) -> object:
+    """Uniform distribution of scipy.stats between two values."""
     _check_ascending(low, high)
     return stats.uniform(low, high - low)
 
 
 def _loguniform(texts: list[str], file_value: float | None) -> object:
+    """Log-uniform distribution of scipy.stats, from the texts of its two ends."""
     low, high = _parse_numbers(texts, 2)
     if low <= 0.0:
         raise ValueError(f"low = {low:g} is outside (0, inf)")
@@ -108,6 +112,7 @@ def _loguniform(texts: list[str], file_value: float | None) -> object:
 
 
 def _normal(texts: list[str], file_value: float | None) -> object:
+    """Normal distribution of scipy.stats, from the texts of mean and standard deviation."""
     mean, spread = _parse_centre_and_spread(texts, file_value)
     sd = abs(mean) * _parse_percent(spread) if _is_percent(spread) else _parse_number(spread)
     if sd <= 0.0:
@@ -116,6 +121,7 @@ def _normal(texts: list[str], file_value: float | None) -> object:
 
 
 def _lognormal(texts: list[str], file_value: float | None) -> object:
+    """Lognormal distribution of scipy.stats, from the texts of median and factor."""
     median, spread = _parse_centre_and_spread(texts, file_value)
     factor = 1.0 + _parse_percent(spread) if _is_percent(spread) else _parse_number(spread)
     if median <= 0.0:
@@ -126,6 +132,7 @@ def _lognormal(texts: list[str], file_value: float | None) -> object:
 
 
 def _triangular(texts: list[str], file_value: float | None) -> object:
+    """Triangular distribution of scipy.stats, from the texts of its three values."""
     low, mode, high = _parse_numbers(texts, 3)
     _check_ascending(low, high)
     if not low <= mode <= high:
@@ -140,10 +147,14 @@ _DISTRIBUTION_PARSERS = {
     "lognormal": _lognormal,
     "triangular": _triangular,
 }
+"""{name of a distribution: function that parses its arguments}."""
 
 
 def _parse_centre_and_spread(texts: list[str], file_value: float | None) -> tuple[float, str]:
-    """Centre, and text of the spread, from one or two arguments; one percentage: about the file's value."""
+    """Centre and spread of a distribution, from one or two argument texts.
+
+    One percentage is about the file's value; the spread is returned as text.
+    """
     if len(texts) == 1 and _is_percent(texts[0]):
         return _require_file_value(file_value), texts[0]
     if len(texts) != 2:
@@ -152,13 +163,16 @@ def _parse_centre_and_spread(texts: list[str], file_value: float | None) -> tupl
 
 
 def _check_ascending(low: float, high: float) -> None:
-    """Raise ValueError unless low < high."""
+    """Raise ValueError unless the lower end of a distribution is below the upper one."""
     if not low < high:
         raise ValueError(f"low = {low:g} is not below high = {high:g}")
 
 
 def _parse_numbers(texts: list[str], count: int) -> list[float]:
-    """Parse exactly `count` finite numbers. Raises ValueError for another count or another text."""
+    """Parse `count` finite numbers from the texts of a distribution.
+
+    Raises ValueError for another count or another text.
+    """
     if len(texts) != count:
         raise ValueError(f"has {len(texts)} numbers, expected {count}")
     return [_parse_number(text) for text in texts]
@@ -176,6 +190,7 @@ def _parse_number(text: str) -> float:
 
 
 def _is_percent(text: str) -> bool:
+    """Whether a text ends with %."""
     return text.strip().endswith("%")
 
 
@@ -188,7 +203,7 @@ def _parse_percent(text: str) -> float:
 
 
 def _require_file_value(file_value: float | None) -> float:
-    """Return the value of the parameter file; ValueError if there is none."""
+    """Value of the parameter file to which a percentage refers; ValueError if there is none."""
     if file_value is None:
         raise ValueError("a percentage needs a value before it: VALUE+-PERCENT%")
     return file_value
@@ -202,7 +217,7 @@ def is_relative(text: str) -> bool:
 
 
 MAX_SAMPLES = 2**24
-"""Maximum number of samples of a study."""
+"""Largest number of samples of a study [1]."""
 
 
 def read_study(path: str | Path) -> dict[str, object]:
@@ -232,7 +247,7 @@ def merge_settings(path: Path | None, stated_settings: Sequence[tuple[str, objec
 def split_settings(
     settings: Mapping[str, object], file_values: Mapping[str, object]
 ) -> tuple[dict[str, object], tuple[UncertainParameter, ...]]:
-    """Split settings into plain values, {name: value}, and uncertain parameters.
+    """Split the settings of a study into plain values, {name: value}, and uncertain parameters.
 
     file_values : {name: value} to which percentages refer
 

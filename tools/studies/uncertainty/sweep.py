@@ -27,7 +27,7 @@ from .worker import FmuRamp, LoadRamp
 
 
 def state_fmu_problem(fmu: Path, load_ramp: LoadRamp, settings: Mapping[str, object]) -> UncertaintyProblem:
-    """State the problem of an FMU and settings.
+    """State the uncertainty study of an FMU: load ramp, and settings with distributions.
 
     settings : {name: value or text of a distribution} of parameters and inputs
 
@@ -86,7 +86,10 @@ def _load_contained_parameter_file(fmu: Path) -> ParameterFile:
 
 
 def format_runs_csv(folder: Path, units: Mapping[str, str]) -> str:
-    """CSV text: quantiles of each output at each point of the ramp, over all runs that did not fail."""
+    """CSV text of a study: quantiles of each output at each point of the ramp.
+
+    They are over all runs that did not fail.
+    """
     runs: dict[str, list[Array]] = {}
     for entry in journal.read_entries(folder):
         for name, values in entry.get("columns", {}).items():

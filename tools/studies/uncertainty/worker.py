@@ -57,11 +57,11 @@ class RampEvaluator(Protocol):
         """Copy of the evaluator whose files are in a folder of this machine."""
 
     def run(self, index: int, settings: Settings) -> Entry:
-        """Evaluate a run; return its journal entry."""
+        """Evaluate a run of the study; return its journal entry."""
 
 
 def run_job(job: tuple[RampEvaluator, Path, Sequence[Run]]) -> list[Entry]:
-    """Do some runs in a worker process of this machine; return their journal entries.
+    """Do some runs of a study in a worker process of this machine; return their journal entries.
 
     job : evaluator, folder of temporary files, runs
     """
@@ -71,6 +71,7 @@ def run_job(job: tuple[RampEvaluator, Path, Sequence[Run]]) -> list[Entry]:
 
 
 def _failed_entry(index: int, settings: Settings, error: str) -> Entry:
+    """Journal entry of a run that failed: its settings and the error message."""
     return {
         "run": index,
         "parameters": dict(settings),
@@ -87,7 +88,7 @@ def killed_entry(index: int, settings: Settings) -> Entry:
 class LoadRamp:
     """Load ramp of all runs of an FMU: name of the driven input, end and step [unit of the input].
 
-    See `ramp.run_ramp`.
+    The FMU runs along it as in `ramp.run_ramp`.
     """
 
     input: str
@@ -166,12 +167,15 @@ class JointRamp:
 
     @property
     def runs_per_job(self) -> int:
-        """Runs that a worker does at once: 1 if each run opens the joint."""
+        """Number of runs that a worker does at once: 1 if each run opens the joint."""
         return 1 if self.reopens_joint else 32
 
     @property
     def runs_per_process(self) -> int:
-        """Runs per process; unlimited (no other process) for a joint registered only in this process."""
+        """Number of runs for which one more process is started.
+
+        It is unlimited (no other process) for a joint registered only in this process.
+        """
         if not KINDS[self.file.joint].package.startswith("jointfmu."):
             return sys.maxsize
         return 4 if self.reopens_joint else 512
@@ -207,7 +211,7 @@ class JointRamp:
         return {"run": index, "parameters": dict(settings), "columns": columns}
 
     def evaluate(self, settings: Settings) -> dict[str, Array]:
-        """Loads and all quantities of a sample, at the loads that are evaluated.
+        """Loads and all quantities of a sample of the joint, at the loads that are evaluated.
 
         Raises ValueError, one line, if the law refuses the sample.
         """

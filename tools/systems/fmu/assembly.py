@@ -10,11 +10,13 @@ from .arm_links import ArmLinks
 from .model import LAG_PARAMETERS, InputSource, SystemComponent, SystemModel
 
 MIN_COMMUNICATION_INTERVAL = 1e-3
-"""Smallest communication step [s] of the default experiment: the implicit step needs no smaller one."""
+"""Smallest communication step [s] of the default experiment.
+
+The implicit step of the system needs no smaller one."""
 
 
 def assemble_system(system: System) -> SystemModel:
-    """Make the model of a system: components in the order of evaluation, with the sources of their inputs.
+    """Make the model of a system: components in the order of evaluation, with the source of each input.
 
     The links of an arm are coupled: see `arm_links`.
 

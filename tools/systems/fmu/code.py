@@ -18,6 +18,7 @@ from jointfmu_fmu_src.native.data import make_data_block, split_parameters
 from .model import SystemComponent, SystemModel, full_name
 
 _COMMON_FILES = list_runtime_files(("elementary",))
+"""C files that all components of a system share."""
 _SHARED_FILE_STEMS = {path.stem for path in _COMMON_FILES} - {"joint", "variables"} | {"elementary_tables"}
 """File names, without suffix, of the C files that all components share."""
 _JOINT_C_FUNCTIONS = (
@@ -29,9 +30,11 @@ _JOINT_C_FUNCTIONS = (
     "find_warnings",
     "describe_warning",
 )
+"""C functions that each component defines, under names with its prefix."""
 _C_DEFINITION_PATTERN = re.compile(
     r"^(?!static|typedef|extern|enum|return|else)[A-Za-z_][\w *]*?\b(\w+)(?:\[.*)?(?:\(| = \{)", re.M
 )
+"""Pattern of the definition of an external name in C."""
 _MAX_WARNINGS = 32
 """Largest number of warnings in one FMU [1]: bits of the flags of logged warnings."""
 
@@ -61,7 +64,7 @@ def generate_sources(system_model: SystemModel) -> dict[str, str]:
 
 
 def _component_code(component: SystemComponent) -> dict[str, str]:
-    """{file name: text} of a component's C, without the FMI layer and the runtime of the system."""
+    """{file name: text} of a component's C, without the FMI functions and the runtime of the system."""
     parameter_split = split_parameters(component.model, component.parameters)
     count = (
         1 + len(component.model.inputs) + len(component.model.outputs) + len(parameter_split.variable_names)
@@ -75,7 +78,7 @@ def _component_code(component: SystemComponent) -> dict[str, str]:
 
 
 def _add_prefix(prefix: str, files: Mapping[str, str]) -> dict[str, str]:
-    """Add a prefix to the names of C files, and to all external names that they define."""
+    """Add a prefix to the names of C files of a component, and to all external names that they define."""
     names = sorted(
         {
             name
@@ -98,7 +101,7 @@ def _add_prefix(prefix: str, files: Mapping[str, str]) -> dict[str, str]:
 
 
 def _format_model_header(system_model: SystemModel) -> str:
-    """Text of model.h: sizes of the system."""
+    """Text of model.h: sizes of the system's model."""
     memory = sum(load_native_definition(p.model).history_layout.size for p in system_model.components)
     events = sum(_count_time_events(p) for p in system_model.components)
     wires = sum(len(p.model.inputs) + len(p.model.outputs) for p in system_model.components)
@@ -122,7 +125,7 @@ def _format_model_header(system_model: SystemModel) -> str:
 
 
 def _count_time_events(component: SystemComponent) -> int:
-    """Number of time events of a component."""
+    """Number of time events of a component, at which a load has a corner."""
     return (
         len(component.model.find_event_times(component.parameters.values))
         if component.model.find_event_times
@@ -131,7 +134,7 @@ def _count_time_events(component: SystemComponent) -> int:
 
 
 def _format_components(system_model: SystemModel, prefixes: Mapping[str, str]) -> str:
-    """Text of components.c: functions, sizes and connections of the components."""
+    """Text of components.c: functions, sizes and connections of the components of a system."""
     first = 1 + len(system_model.inputs)
     reference = {p.full_name(v.name): k for k, (p, v) in enumerate(system_model.inputs, start=1)}
     reference |= {p.full_name(v.name): k for k, (p, v) in enumerate(system_model.outputs, start=first)}

@@ -10,18 +10,21 @@ from jointfmu.quantity import flatten_fields
 from jointfmu.quantity.declaration import group_field
 
 SYSTEM_KIND = "system"
-"""Value of `Model.joint` for the model of a system."""
+"""Value of `Model.joint` for the model of a system, which has no kind of joint."""
 LAG_PARAMETERS = ("lag_a", "lag_b")
 """Parameters of bodies that are needed only if joints and bodies are separate FMUs."""
 
 
 def full_name(component_name: str, variable_name: str) -> str:
-    """Name of a component's variable in the system; the component without a name gives its names directly."""
+    """Name of a component's variable in the system: COMPONENT.VARIABLE.
+
+    A component without a name gives the names of its variables directly.
+    """
     return f"{component_name}.{variable_name}" if component_name else variable_name
 
 
 class InputSource(NamedTuple):
-    """Source of an input: an output of another component, or an input of the system that is its input."""
+    """Source of a component's input: an output of another component, or an input of the system."""
 
     component: str
     variable: str
@@ -45,28 +48,28 @@ class SystemComponent:
     start_values: Mapping[str, float]
 
     def full_name(self, variable_name: str) -> str:
-        """Name of a variable or parameter of the component in the system."""
+        """Name of a variable or parameter of the component in the system: COMPONENT.VARIABLE."""
         return full_name(self.name, variable_name)
 
     @property
     def system_inputs(self) -> list[Variable]:
-        """Inputs that are inputs of the system."""
+        """Inputs of the component that no other component drives: they are inputs of the system's FMU."""
         return [v for v in self.model.inputs if v.name not in self.sources]
 
     @property
     def body_count(self) -> int:
-        """Number of degrees of freedom."""
+        """Number of degrees of freedom of the component."""
         return self.model.state_count // 2
 
     @property
     def variable_parameters(self) -> list[str]:
-        """Names of the parameters that are FMU variables of the system."""
+        """Names of the component's parameters that are FMU variables of the system."""
         return [*self.model.parameter_fields()]
 
 
 @dataclass(frozen=True, slots=True)
 class SystemModel:
-    """Model of a system: its components, and times of the default experiment.
+    """Model of a system, for one FMU: its components, and times of the default experiment.
 
     components        : loads, then joints, then bodies: the inputs of each depend on those before and on
         states
@@ -89,12 +92,15 @@ class SystemModel:
 
     @property
     def inputs(self) -> list[tuple[SystemComponent, Variable]]:
-        """(component, variable) of the inputs of the system."""
+        """Inputs of the system as (component, variable)."""
         return [(component, v) for component in self.components for v in component.system_inputs]
 
     @property
     def outputs(self) -> list[tuple[SystemComponent, Variable]]:
-        """(component, variable) of the outputs: positions, speeds, accelerations of bodies; then others."""
+        """Outputs of the system as (component, variable).
+
+        First positions, speeds and accelerations of bodies, then the others.
+        """
         moving = [
             (component, v)
             for k in range(3)
@@ -146,6 +152,7 @@ class SystemModel:
         """Make the parameter file of the system from those of all components."""
 
         def collect(attribute: str) -> dict[str, Any]:
+            """{name in the system: value} of one attribute of all parameter files."""
             return {
                 p.full_name(name): value
                 for p in self.components
@@ -176,7 +183,10 @@ class SystemModel:
 
 
 def _parameter_groups(component: SystemComponent) -> list[tuple[type, Any, Any]]:
-    """(class, field, value) of the groups of parameters of a component, with their names in the system."""
+    """List (class, field, value) of the groups of a component's parameters.
+
+    The names are those in the system.
+    """
     values = component.parameters.values
     if component.name:
         return [(type(values), group_field(component.model.doc, **{component.name: type(values)}), values)]
@@ -187,7 +197,7 @@ def _parameter_groups(component: SystemComponent) -> list[tuple[type, Any, Any]]
 
 
 def _copy_group(group: Field[Any]) -> Any:
-    """New declaration of a group of parameters, for another class."""
+    """New dataclass field for a group of parameters, for the class of another component."""
     return group_field(group.metadata["doc"], **group.metadata["alternatives"])
 
 
@@ -201,5 +211,5 @@ def with_component_name(component: SystemComponent, variable: Variable) -> Varia
 
 
 def _raise_not_in_python(*arguments: object) -> Any:
-    """Raise NotImplementedError: replaces the functions of a model that exist only in C."""
+    """Raise NotImplementedError: replaces the Python functions of a system's model, which exist only in C."""
     raise NotImplementedError("a system is evaluated in C alone")

@@ -1,4 +1,4 @@
-"""Reference results inside the FMU of a system: its experiment, by model exchange at a tight tolerance.
+"""Proof of a system's FMU: the reference results that it contains, by model exchange at a tight tolerance.
 
 The FMUs of the single joints verify the joint laws against the package. The FMU of a system adds connections,
 history variables and the implicit step. Its references are the same equations, integrated by CVode.
@@ -33,7 +33,7 @@ The references end where results with this and with the solver tolerance differ 
 from there the motion is too sensitive to be compared.
 """
 MIN_SCALE_RATIO = 1e-2
-"""Smallest scale of an output over its nominal value [1]."""
+"""Smallest scale of an output's tolerance over the nominal value of the output [1]."""
 SHORT_STEP = 1e-3
 """Short communication step [s]; at most a tenth of the stop time."""
 LONG_STEP_RATIO = 10
@@ -50,8 +50,9 @@ JUMP_RATIO = 10.0
 The change must also exceed OUTPUT_TOLERANCE. A stiffness jumps where the motion reverses.
 """
 JUMP_NEIGHBOUR_INTERVALS = 3
-"""Intervals [1] next to a jump in which results are not compared: correct steps find a reversal slightly
-earlier or later."""
+"""Number of intervals next to a jump [1] in which results are not compared.
+
+Correct steps find a reversal slightly earlier or later."""
 SIGNIFICANT_DIGITS = 7
 """Significant digits of results [1]."""
 _PROOF_DESCRIPTION = """\
@@ -74,10 +75,13 @@ The annotation of each experiment states the scale of each output: its largest r
 end, or {small:g} of its nominal value if that is larger. Times within {near:.3g} s of a jump of an output are
 not compared: a stiffness jumps where the motion reverses and friction sticks again.
 """
+"""Text in the FMU that explains its experiments."""
 
 
 def make_proof_files(model: Model, stop: float, interval: float, fmu: Path) -> dict[str, bytes]:
-    """Make the reference files of a system's FMU, {path: content}; only a text if no experiment can be run.
+    """Make the files with experiments and reference results of a system's FMU, {path: content}.
+
+    Only a text if no experiment can be run.
 
     stop, interval : stop time and interval of the system's experiment [s]
     fmu            : path of the FMU, with all files that are needed to run it
@@ -162,7 +166,7 @@ def _find_scales(model: Model, results: TimeSeries) -> dict[str, float]:
 
 
 def _find_first_difference(model: Model, fine_results: TimeSeries, coarse_results: TimeSeries) -> int:
-    """Index of the first row at which two results differ by more than OUTPUT_TOLERANCE.
+    """Index of the first row at which two results of the system differ by more than OUTPUT_TOLERANCE.
 
     It is the number of rows if there is no difference. Rows near jumps are not compared.
     """
@@ -176,14 +180,17 @@ def _find_first_difference(model: Model, fine_results: TimeSeries, coarse_result
 
 
 def _first_rows(results: TimeSeries, row_count: int) -> TimeSeries:
-    """First rows of a time series."""
+    """First rows of a time series, as a new series."""
     return TimeSeries(
         results.time[:row_count], {name: column[:row_count] for name, column in results.columns.items()}
     )
 
 
 def _simulate(model: Model, fmu: Path, times: np.ndarray, tolerance: float) -> TimeSeries:
-    """Simulate all outputs at given times by model exchange; RuntimeError with the reason of a failure."""
+    """Simulate all outputs of a system's FMU at given times by model exchange.
+
+    Raises RuntimeError with the reason of a failure.
+    """
     names, messages = [v.name for v in model.outputs], list[str]()
     if not exchange.has_cvode_solver():
         raise RuntimeError("fmpy has no solver for model exchange")
@@ -205,7 +212,7 @@ def _simulate(model: Model, fmu: Path, times: np.ndarray, tolerance: float) -> T
 
 
 def _is_smooth(results: TimeSeries, scales: Mapping[str, float]) -> np.ndarray:
-    """Whether no output jumps near a row (n)."""
+    """Mask (n) of the rows of a result near which no output jumps."""
     jumps = np.zeros(results.time.size - 1, dtype=bool)
     for name, column in results.columns.items():
         change = np.abs(np.diff(column))

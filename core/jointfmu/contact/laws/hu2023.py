@@ -68,7 +68,10 @@ class Hu2023(HardnessLimitedLaw, CheckedParameters):
         return 2.8 * self.sigma_y
 
     def spot_distribution(self) -> SpotDistribution:
-        """Regimes of a spot and size distribution (Eq. 17) of the chosen reading; reference area s_min."""
+        """Size distribution of the spots (Eq. 17) and regimes of a spot, by the choice `reading`.
+
+        The reference area is s_min.
+        """
         return (
             corrected_spot_distribution(self)
             if self.reading == "corrected"

@@ -17,7 +17,9 @@ class PlasticStage(NamedTuple):
 
 
 FIRST_STAGE = PlasticStage(area_factor=0.93, area_exponent=1.136, load_factor=1.03, load_exponent=1.425)
+"""Power laws from first yield to SECOND_STAGE_DEFORMATION_RATIO times its deformation."""
 SECOND_STAGE = PlasticStage(area_factor=0.94, area_exponent=1.146, load_factor=1.40, load_exponent=1.263)
+"""Power laws from there to PLASTIC_DEFORMATION_RATIO times the deformation at first yield."""
 SECOND_STAGE_DEFORMATION_RATIO = 6.0
 """Deformation w/w_c [1] at the start of the second stage."""
 PLASTIC_DEFORMATION_RATIO = 110.0

@@ -38,7 +38,9 @@ def contact_area_shares(
 
 
 def _diffusion_mode_series(pressure_ratio: Number, variance_ratio: Number) -> tuple[Number, Number]:
-    """Area share in elastic contact, and its load over the hardness [1]: series of diffusion modes.
+    """Share of the nominal area in elastic contact, and the load on it over hardness and area [1].
+
+    Sum of a series of diffusion modes of the pressure distribution.
 
     pressure_ratio : pressure over hardness [1]
     variance_ratio : variance over squared hardness [1]
@@ -58,7 +60,9 @@ def _diffusion_mode_series(pressure_ratio: Number, variance_ratio: Number) -> tu
 
 
 def _image_source_series(pressure_ratio: Number, variance_ratio: Number) -> tuple[Number, Number]:
-    """Area share in elastic contact, and its load over the hardness [1]: series of image sources.
+    """Share of the nominal area in elastic contact, and the load on it over hardness and area [1].
+
+    Sum of a series of image sources of the pressure distribution.
 
     Arguments as in `_diffusion_mode_series`; it converges faster for small variance.
     """

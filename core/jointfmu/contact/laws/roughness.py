@@ -190,7 +190,10 @@ def onset_pressure(law: RoughnessLaw) -> Number:
 
 
 def _make_power_term_for_sum(coefficient: Number, exponent: Number) -> PowerTerm:
-    """Power law of a spot whose sum over all spots is coefficient exp(exponent u)."""
+    """Load or stiffness of one spot, from its sum over all spots: coefficient exp(exponent u).
+
+    Here u is the logarithm of the pressure; the spots are those of a formal size distribution.
+    """
     return PowerTerm(coefficient * (exponent - _SIZE_EXPONENT), exponent)
 
 

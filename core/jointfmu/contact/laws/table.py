@@ -41,13 +41,15 @@ MAX_EXPONENT = 5.0
 MIN_PRESSURE_STEP = 1.001
 """Smallest ratio of the pressures of neighbouring points [1]."""
 _MIN_LENGTH = 1e-100
-"""Smallest length of a segment [1], for segments that only fill the data of an FMU."""
+"""Smallest length of a spline segment in ln p [1], for segments that only fill up the data of an FMU."""
 _SIZE_EXPONENT = 0.25
 """Exponent m [1] of the formal size distribution, smaller than the exponent of any load; m cancels."""
 
 
 class LogSpline(NamedTuple):
-    """Monotone spline of y = ln(K/K_1) over u = ln(p/p_1), with y = u = 0 at the first point.
+    """Monotone spline of the log-stiffness y = ln(K/K_1) over the log-pressure u = ln(p/p_1).
+
+    At the first point of the table y = u = 0.
 
     u, y      : (n) values at the points [1]
     exponents : (n) slopes dy/du = d(ln K)/d(ln p) at the points [1]
@@ -58,7 +60,7 @@ class LogSpline(NamedTuple):
     exponents: Sequence[Number]
 
     def evaluate(self, u: Number) -> tuple[Number, Number]:
-        """Value y and slope dy/du at u, with the continuations below and above the points."""
+        """Log-stiffness y and its slope dy/du at log-pressures u, extrapolated below and above the points."""
         below = np.minimum(u, 0.0)
         y, slope = self.exponents[0] * below, self.exponents[0]
         for i in range(len(self.u) - 1):
@@ -73,7 +75,9 @@ class LogSpline(NamedTuple):
 
 
 def monotone_spline(pressure: Array, stiffness: Array) -> LogSpline:
-    """Spline through the points p (n) [Pa], K (n) [Pa/m]; slopes by Fritsch and Butland (1984).
+    """Spline of the log-stiffness through points with pressures p (n) [Pa] and stiffnesses K (n) [Pa/m].
+
+    The slopes are those of Fritsch and Butland (1984).
 
     An inner slope is the weighted harmonic mean of the slopes of both chords, 0 if one of them is 0.
     """
@@ -140,7 +144,7 @@ class StiffnessTable:
 
     @property
     def spline(self) -> LogSpline:
-        """Spline through the points."""
+        """Spline of the log-stiffness over the log-pressure through the points of the table."""
         return monotone_spline(np.array(self.pressure), np.array(self.stiffness))
 
 
@@ -195,6 +199,7 @@ class TableLaw(CheckedParameters):
         normal = self.table.factor * K * area
 
         def proportional(coefficient: Number) -> PowerTerm:
+            """Load or energy of a spot whose sum over all spots is proportional to the pressure p."""
             return PowerTerm(coefficient * (1.0 - _SIZE_EXPONENT), 1.0)
 
         return SpotDistribution(

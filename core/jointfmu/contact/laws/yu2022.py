@@ -64,7 +64,10 @@ class Yu2022(HardnessLimitedLaw, CheckedParameters):
         return 2.8 * self.sigma_y
 
     def spot_distribution(self) -> SpotDistribution:
-        """Regimes of a spot and size distribution (Eqs. 44, 46); reference area a_nec, the onset of yield."""
+        """Size distribution of the spots (Eqs. 44, 46) and regimes of a spot.
+
+        The reference area a_nec is the area of a spot at the onset of yield.
+        """
         return self._cached_spot_distribution
 
     @cached_property
@@ -91,6 +94,8 @@ class Yu2022(HardnessLimitedLaw, CheckedParameters):
         def make_stage_load(
             stage: PlasticStage, lower_log_area: Number, upper_log_area: Number
         ) -> SmoothTerm:
+            """Load [N] of a spot in one elastic-plastic stage, between two log-areas."""
+
             def spot_load(log_area: Number) -> Number:
                 sharp = curvature_ratio(log_area)
                 ratio = np.exp(log_area) * sharp**2  # a/a_nec of this spot's own curvature
@@ -107,6 +112,8 @@ class Yu2022(HardnessLimitedLaw, CheckedParameters):
         def make_stage_stiffness(
             stage: PlasticStage, lower_log_area: Number, upper_log_area: Number
         ) -> SmoothTerm:
+            """Normal stiffness [N/m] of a spot in one elastic-plastic stage, between two log-areas."""
+
             def spot_stiffness(log_area: Number) -> Number:
                 sharp = curvature_ratio(log_area)
                 ratio = np.exp(log_area) * sharp**2
@@ -189,6 +196,7 @@ def curvature_terms(law: Yu2022) -> tuple[tuple[Number, Number], tuple[Number, N
     log_axes = 0.25 * np.log1p(-(law.e**2))
 
     def make_curvature_term(surface: FlankSurface, exponent_sign: float) -> tuple[Number, Number]:
+        """Factor b and exponent p of the curvature b a^-p of one surface."""
         b = 2.0 ** (4.0 - surface.D) * np.pi ** (0.5 * surface.D) * surface.G ** (surface.D - 1.0) * root
         return b * np.exp(exponent_sign * surface.D * log_axes), 0.5 * surface.D
 

@@ -51,7 +51,9 @@ class Zhao2018(HardnessLimitedLaw, CheckedParameters):
         return self.H
 
     def spot_distribution(self) -> SpotDistribution:
-        """Size distribution (Eq. 2) and regimes of a spot: elastic for t > 0, plastic for t <= 0.
+        """Size distribution of the spots (Eq. 2), and regimes of a spot: elastic or plastic.
+
+        The log-area t of a spot is relative to the critical area a'_c; elastic for t > 0, plastic for t <= 0.
 
         Quantities: load [N]; normal, tangential [N/m]; area [m2] real; plastic_work [J] (Eq. 15);
         elastic_work [J] (Eq. 17); loop_area [m3], the sum of a'^(3/2) that Eqs. 24 and 26 need.

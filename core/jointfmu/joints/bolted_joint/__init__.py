@@ -23,3 +23,4 @@ KIND = JointKind(
     working_point=("preload", "moment", "temperature"),
     find_contradictions=find_contradictions,
 )
+"""Description of the bolted joint for builders and tools."""

@@ -46,7 +46,7 @@ class MemberModes:
     def for_bodies(
         cls, elastic_bodies: ElasticBodies, point_count: int, patch_positions: Array
     ) -> "MemberModes":
-        """Deformation modes of elastic members, from the section [bodies] of a parameter file.
+        """Deformation modes of elastic members, read from the section [bodies] of a parameter file.
 
         point_count     : number n of contact points
         patch_positions : (m, 2) [m] of the friction patches

@@ -57,7 +57,7 @@ class BoltSprings:
         return bolt_force_per_moment(self.position) / self.bolts_per_position
 
     def preload_force(self, joint: AnyBoltedJoint, preload: float, moment: float) -> Array:
-        """Force (b) [N] of each bolt at tightening: working preload and share of the moment, at least 0."""
+        """Force (b) [N] of each bolt at tightening, at least 0: working preload, and share of the moment."""
         return np.asarray(np.maximum(working_preload(joint, preload) + moment * self.force_per_moment, 0.0))
 
     def head_gap(self, preload_force: Array, elongation: Array) -> Array:
@@ -71,7 +71,10 @@ class BoltSprings:
         return np.maximum(preload_force + self.stiffness * elongation, 0.0)
 
     def active_stiffness(self, preload_force: Array, elongation: Array) -> Array:
-        """Stiffness dF/de (b) [N/m] of each bolt: 0 after lift-off; at lift-off the mean of both sides."""
+        """Stiffness dF/de (b) [N/m] of each bolt; 0 if its head has lifted off.
+
+        At lift-off: the mean of the stiffness before and after.
+        """
         force = preload_force + self.stiffness * elongation
         pulling = np.where(
             force > self.lift_off_force,
@@ -109,7 +112,9 @@ def bolt_force_per_moment(bolt_position: Array) -> Array:
 def _equivalent_positions(
     mean_x: float, mean_y: float, mean_x2: float, mean_y2: float, mean_xy: float
 ) -> Array:
-    """Corners (4, 2) [m] of a parallelogram with given means of x, y, x^2, y^2 and x y.
+    """Positions (4, 2) [m] of four bolts with given means of x, y, x^2, y^2 and x y.
+
+    The positions are the corners of a parallelogram.
 
     For one bolt, two bolts, and four bolts on a rectangle along x and y these are the bolt positions.
     """

@@ -10,6 +10,7 @@ from .equilibrium import JointAssembly
 STIFFNESS_UNITS = {"x": "N/m", "y": "N/m", "z": "N/m", "rx": "N.m/rad", "ry": "N.m/rad", "rz": "N.m/rad"}
 """{force along or moment about an axis: unit of its stiffness}."""
 COMPLIANCE_COMPONENTS = ("interface", "members", "bolts")
+"""Parts of the joint whose compliances add up, in the order of `component_compliances`."""
 MIN_INTERFACE_SHARE = 0.1
 """Share of the interface in the compliance of the joint [1] from which its law matters."""
 MIN_BOLT_STIFFNESS_RATIO = 1e-9
@@ -17,7 +18,10 @@ MIN_BOLT_STIFFNESS_RATIO = 1e-9
 
 
 def condense_stiffness(tangent_stiffness: Array) -> Array:
-    """Stiffness (6, 6) [N/m, N, N.m] with the members in equilibrium: static condensation of H to q."""
+    """Stiffness (6, 6) [N/m, N, N.m] between the sides of the joint, with the members in equilibrium.
+
+    The modal coordinates are eliminated from the tangent stiffness H (static condensation).
+    """
     return np.asarray(
         tangent_stiffness[:6, :6]
         - tangent_stiffness[:6, 6:] @ np.linalg.solve(tangent_stiffness[6:, 6:], tangent_stiffness[6:, :6])
@@ -89,7 +93,7 @@ class Compliances(NamedTuple):
 
     @property
     def is_interface_relevant(self) -> bool:
-        """Whether the share of the interface reaches MIN_INTERFACE_SHARE in any direction."""
+        """Whether the share of the interface in the compliance reaches MIN_INTERFACE_SHARE in a direction."""
         return bool(np.max(self.compliance_shares[0]) >= MIN_INTERFACE_SHARE)
 
     @property
@@ -109,5 +113,5 @@ class Compliances(NamedTuple):
 
 
 def _stiffness_name(direction: str) -> str:
-    """Name of the stiffness in a direction: K_zz, K_rx."""
+    """Name of the stiffness along or about an axis: K_zz, K_rx."""
     return f"K_{direction if direction.startswith('r') else 2 * direction}"

@@ -30,7 +30,7 @@ MAX_SQUARE_DISTANCE_RATIO = 300.0
 
 
 class PreloadState(NamedTuple):
-    """Contact state of the tightened joint.
+    """Approach and pressure of the contact after tightening, before the sides move.
 
     approach, pressure : (n) [m] and (n) [Pa] of the points
     patch_approach     : (m) [m]
@@ -42,7 +42,7 @@ class PreloadState(NamedTuple):
 
 
 class NormalState(NamedTuple):
-    """Normal contact state at a relative displacement of the sides.
+    """Approach, pressure and stiffness of the contact at a relative displacement of the sides.
 
     approach            : (n) [m] of the points
     pressure, stiffness : p (n) [Pa] and dp/d(approach) (n) [Pa/m] of the points
@@ -57,7 +57,7 @@ class NormalState(NamedTuple):
 
 @dataclass(frozen=True)
 class Contact:
-    """Contact interface: points carry the contact pressure, patches the friction.
+    """Contact interface of a bolted joint: points carry the contact pressure, patches the friction.
 
     pressure_curve      : contact pressure [Pa] over approach [m]
     has_elastic_members : the patches take the normal force of the points around them. Between rigid members
@@ -71,7 +71,7 @@ class Contact:
 
     @cached_property
     def pressure_transfer(self) -> Array:
-        """Matrix (m, n) [1] from the pressures of the points to those of the patches."""
+        """Matrix (m, n) [1] that gives the pressures of the friction patches from those of the points."""
         return pressure_transfer(self.points, self.patches)
 
     def patch_approach(self, approach: Array) -> Array:
@@ -90,7 +90,7 @@ class Contact:
         return self.pressure_curve.inverse(preload_pressure(joint, self.points, preload, moment))
 
     def preload_state(self, joint: AnyBoltedJoint, preload: float, moment: float) -> PreloadState:
-        """State of the tightened joint under a preload [N] of each bolt and a moment [N.m]."""
+        """Approach and pressure of the contact before motion, under preload [N] per bolt and moment [N.m]."""
         approach = self.preloaded_approach(joint, preload, moment)
         if self.has_elastic_members:
             patch_approach = self.patch_approach(approach)
@@ -103,7 +103,10 @@ class Contact:
     def evaluate_normal(
         self, preload_state: PreloadState, relative_displacement: Array, elastic_opening: Array
     ) -> NormalState:
-        """State at relative displacement q (6), with an opening (n) [m] of the points by elastic members."""
+        """Approach and pressure of the contact at a relative displacement q (6) of the sides.
+
+        Deformation of the members adds an opening elastic_opening (n) [m] of the points.
+        """
         approach = preload_state.approach - (
             rigid_opening(self.points.position, relative_displacement) + elastic_opening
         )
@@ -144,7 +147,10 @@ def force_transfer(points: PressureDistribution, patches: FrictionPatches) -> Ar
 
 
 def pressure_transfer(points: PressureDistribution, patches: FrictionPatches) -> Array:
-    """Matrix (m, n) [1] from the pressures of the points to those of the patches, by `force_transfer`."""
+    """Matrix (m, n) [1] that gives the pressures of the friction patches from those of the contact points.
+
+    It distributes the normal forces as `force_transfer` does.
+    """
     return force_transfer(points, patches) * points.area_share / patches.area_share[:, None]
 
 

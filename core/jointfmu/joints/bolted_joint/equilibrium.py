@@ -64,8 +64,10 @@ MIN_LENGTH_RATIO = 0.1
 MIN_LOAD_STEP = 1e-4
 """Increment of the step fraction [1] below which a load step is given up."""
 DIFFERENCE_STEP = 1e-7
-"""Perturbation for finite differences over the largest approach of a patch at tightening [1], or over the
-approach at which the contact has closed if it is larger: without preload all patches are open."""
+"""Step of finite differences of the tractions, over the largest patch approach at tightening [1].
+
+Without preload all patches are open: then over the approach at which the contact has closed, if that is
+larger."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +99,9 @@ class TrialState:
 
 @dataclass(frozen=True)
 class JointAssembly:
-    """Members, contact interface and bolts. Jacobians G = [G_q G_a] are with respect to q and a.
+    """Members, contact interface and bolts of a joint as one mechanical system.
+
+    Jacobians G = [G_q G_a] are with respect to the relative displacement q and the modal coordinates a.
 
     nominal_area : nominal area of the interface [m2]
     """
@@ -136,7 +140,7 @@ class JointAssembly:
     def evaluate_normal(
         self, preload_state: PreloadState, relative_displacement: Array, modal_coordinates: Array
     ) -> NormalState:
-        """Contact at relative displacement q (6) and modal coordinates a (k) [m]."""
+        """Approach and pressure of the contact at displacement q (6) and modal coordinates a (k) [m]."""
         return self.contact.evaluate_normal(
             preload_state, relative_displacement, self.modes.opening @ modal_coordinates
         )
@@ -275,7 +279,7 @@ class LoadStep:
         return np.asarray(np.where(closed, pressure / np.where(closed, stiffness, 1.0), 0.0))
 
     def traction_derivatives(self, trial_state: TrialState) -> Array:
-        """Derivatives (m, 3, 4) [Pa/m] of the tractions by tangential displacement (3) and opening (1).
+        """Derivatives (m, 3, 4) [Pa/m] of the friction tractions by displacement (3) and opening (1).
 
         Finite differences.
         """
@@ -327,7 +331,7 @@ def solve_equilibrium(load_step: LoadStep) -> TrialState:
 
 
 def predict_by_tangent(load_step: LoadStep) -> ModalPredictor:
-    """Predictor with the tangent stiffness at the start of a load step.
+    """Predict the modal coordinates at the end of a load step, with the tangent stiffness at its start.
 
     Raises ValueError if this tangent is singular.
     """
@@ -353,7 +357,9 @@ def predict_by_tangent(load_step: LoadStep) -> ModalPredictor:
 def solve_newton(
     load_step: LoadStep, step_fraction: float, modal_coordinates: Array, residual_jacobian: Array
 ) -> tuple[TrialState, bool]:
-    """Newton's method at a step fraction [1]: last trial state, and whether the method converged.
+    """Newton's method for the modal coordinates at a step fraction [1] of a load step.
+
+    Returns the last trial state, and whether the method converged.
 
     It starts at modal coordinates a (k) [m] with the Jacobian (k, k) [N/m] of an earlier state: in a divided
     load step, too, that at the start of the load step. The Jacobian is reused, with Broyden's update, after a
@@ -391,7 +397,9 @@ def search_line(
     correction: Array,
     jacobian_is_current: bool,
 ) -> tuple[TrialState, bool]:
-    """State after a correction (k) [m] of the modal coordinates, and whether it is the full correction.
+    """Trial state after a correction (k) [m] of the modal coordinates, shortened if it overshoots.
+
+    Returns also whether the correction was applied in full.
 
     The energy slope [J] is residual . correction: where friction sticks, the derivative of the potential
     energy along the correction. With slip there is no potential, but the slope still vanishes at the

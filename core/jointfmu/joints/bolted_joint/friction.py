@@ -98,7 +98,7 @@ class FrictionUpdate:
 
 @dataclass(frozen=True)
 class FrictionLaw:
-    """Friction law of the patches.
+    """Friction law of the patches of a bolted joint: tractions from displacements and history.
 
     pressure_curve       : contact pressure [Pa] over approach [m]
     stiffness_ratio      : K_T/K_N [1]
@@ -118,6 +118,7 @@ class FrictionLaw:
         offsets = height_offsets(self.patches.preload_pressure_ratio)
 
         def build_foundation(*approaches: bytes) -> Foundation:
+            """Slider foundation for an onset approach and a smallest approach, both as bytes."""
             onset, smallest = (np.frombuffer(each) for each in approaches)
             heights = heights_after_liftoff(slider_heights(self.pressure_curve, onset, offsets), smallest)
             return Foundation(self.pressure_curve, self.stiffness_ratio, self.friction_coefficient, heights)
@@ -127,7 +128,7 @@ class FrictionLaw:
     def foundation(
         self, onset_approach: Array | None = None, min_approach: Array | None = None
     ) -> Foundation:
-        """Slider foundation of the patches, at a given history of their approach.
+        """Foundation of sliders of the patches, for a history of their approach.
 
         onset_approach : (m) [m] at the end of full stick; None: not known
         min_approach   : (m) [m] smallest approach since then; None: onset_approach
@@ -170,7 +171,7 @@ class FrictionLaw:
         tangential_increment: Array,
         stick_stiffness: Array,
     ) -> SliderUpdate | None:
-        """Update in which all sliders stick; None if a patch exceeds the limit of full stick.
+        """Friction update in which all sliders stick; None if a patch exceeds the limit of full stick.
 
         packed_forces                : (m, 2, n) [Pa], see `full_stick_force`
         start_approach, end_approach : (m) [m] approaches
@@ -188,7 +189,7 @@ class FrictionLaw:
         )
 
     def _slip_state(self, history: History, tangential_increment: Array) -> int:
-        """SLIP_1D if all displacements and forces so far are along x, else SLIP_2D."""
+        """Friction state of a slipping joint: SLIP_1D if all motion so far is along x, else SLIP_2D."""
         in_plane = (
             self.has_elastic_members or history["state"] == SLIP_2D or np.any(history["force"][:, 1, :2])
         )
@@ -196,18 +197,18 @@ class FrictionLaw:
 
 
 def unit_displacements(patches: FrictionPatches) -> list[Array]:
-    """Tangential displacements (m, 3) [1, m] of the patches: an array each for unit s_x, s_y, theta_z."""
+    """Tangential displacements (m, 3) [1, m] of the patches for unit s_x, unit s_y and unit theta_z."""
     return [tangential_displacement(patches, unit) for unit in np.eye(6)[TANGENTIAL_COMPONENTS]]
 
 
 def directional_stiffness(tangent: Array, direction: Array) -> Array:
-    """Tangential stiffness (m) [Pa/m] of patches in directions (m, 3), from their tangents (m, 6) [Pa/m]."""
+    """Tangential stiffness (m) [Pa/m] of patches in directions (m, 3), from tangents (m, 6) [Pa/m]."""
     (xx, xy, yy, xt, yt, tt), (u, v, w) = tangent.T, direction.T
     return np.asarray(xx * u**2 + yy * v**2 + tt * w**2 + 2.0 * (xy * u * v + xt * u * w + yt * v * w))
 
 
 def continued_motion_stiffness(patches: FrictionPatches, friction_update: FrictionUpdate) -> list[float]:
-    """Tangent stiffness per area [Pa/m], [Pa.m] for further displacements s_x, s_y and rotation theta_z.
+    """Tangent stiffness per area [Pa/m], [Pa.m] of the friction if s_x, s_y or the rotation theta_z goes on.
 
     In the direction of the traction of their patch, sliders at their limits continue to slip; in the opposite
     direction they stick. Each component is the smaller one of the stiffnesses in both directions.

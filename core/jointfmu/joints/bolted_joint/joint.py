@@ -53,11 +53,12 @@ from .outputs import (
 MAX_POINTS = 120
 """Largest number of points that carry the normal force [1]."""
 ZERO_MOTION = (0.0, 0.0, 0.0)
+"""Default of translations, rotations and their rates: no motion."""
 
 
 @lru_cache(maxsize=8)
 def contact_points(pressure_source: PressureSource) -> PressureDistribution:
-    """Points that carry the normal force of a joint."""
+    """Points that carry the normal force of a joint, selected from the nodes of its pressure distribution."""
     nodes = pressure_distribution(pressure_source)
     rows = compute_once(
         f"points {MAX_POINTS}", nodes.rows, lambda: np.stack(reduce_points(nodes, MAX_POINTS).rows)
@@ -67,7 +68,7 @@ def contact_points(pressure_source: PressureSource) -> PressureDistribution:
 
 @lru_cache(maxsize=8)
 def find_friction_patches(pressure_source: PressureSource) -> FrictionPatches:
-    """Patches that carry the friction of a joint."""
+    """Patches that carry the friction of a joint: those of its pressure field, or reduced from its nodes."""
     stated = pressure_source.friction_patches() if isinstance(pressure_source, NodalField) else None
     if stated:
         return stated
@@ -128,7 +129,7 @@ class BoltedJointSpring:
 
     @classmethod
     def for_joint(cls, joint: AnyBoltedJoint) -> "BoltedJointSpring":
-        """Joint with the points and patches of its FMU.
+        """Bolted joint of a parameter set, with the points and patches that its FMU has.
 
         Raises ValueError if its [bodies] were computed for another contact.
         """
@@ -144,9 +145,10 @@ class BoltedJointSpring:
     def for_interface_nodes(
         cls, joint: AnyBoltedJoint, nodes: PressureDistribution | None = None
     ) -> "BoltedJointSpring":
-        """Joint with rigid members, and a point and a patch at each node.
+        """Bolted joint with rigid members, and a point and a friction patch at each node of its contact.
 
-        nodes : None: all nodes of its pressure distribution
+        nodes : pressure distribution with the nodes to use; None: all nodes of the joint's pressure
+                distribution
         """
         points = pressure_distribution(joint.pattern) if nodes is None else nodes
         joint, patches = with_rigid_members(joint), points.as_patches()
@@ -155,7 +157,7 @@ class BoltedJointSpring:
         )
 
     def with_nodes(self, nodes: PressureDistribution) -> "BoltedJointSpring":
-        """Copy of the joint with rigid members, and a point and a patch at each of the given nodes."""
+        """Copy of the joint with rigid members; a contact point and a friction patch at each given node."""
         joint, patches = with_rigid_members(self.joint), nodes.as_patches()
         modes = _rigid_member_modes(joint, nodes, patches)
         return replace(self, joint=joint, points=nodes, patches=patches, modes=modes)
@@ -201,7 +203,7 @@ class BoltedJointSpring:
         return self.contact.preloaded_approach(self.joint, preload, moment)
 
     def checked_preloaded_approach(self, preload: float, moment: float) -> Array:
-        """Approach (n) [m] of the points, see `preloaded_approach`.
+        """Approach (n) [m] of the points under a preload [N] of each bolt and a moment [N.m], after checks.
 
         Raises ValueError if all points are open, or if the pressure reaches the hardness.
         """
@@ -228,13 +230,13 @@ class BoltedJointSpring:
         return self.bolts.active_stiffness(force, np.zeros_like(force))
 
     def compliances(self, preload: float, moment: float = 0.0) -> Compliances:
-        """Compliances of the tightened joint with elastic members."""
+        """Compliances of the tightened joint with elastic members: shares of interface, members and bolts."""
         H = self.tangent_stiffness(preload, moment)
         return Compliances.for_assembly(self.assembly, H, self._active_bolt_stiffness(preload, moment))
 
     @property
     def history_layout(self) -> HistoryLayout:
-        """Layout of the history variables."""
+        """Names and shapes of the history variables of the joint's friction."""
         return history_layout(self.patches.area_share.size)
 
     def initial_history(self) -> Array:
@@ -331,7 +333,10 @@ class BoltedJointSpring:
     def _elastic_shear_sums(
         self, preload_state: PreloadState, normal_state: NormalState, relative_displacement: Array
     ) -> tuple[dict[str, Number], tuple[Number, Number]]:
-        """Sums of `elastic_shear`, and its terms (n) [Pa] in the pressure and (n) [Pa/m] in the stiffness."""
+        """Sums over the points of the shear traction without friction history, see `elastic_shear`.
+
+        Returns also its terms (n) [Pa] in the normal traction and (n) [Pa/m] in the normal stiffness.
+        """
         limit, derivatives = (
             self.joint.mu * preload_state.pressure,
             self.curve.derivatives(normal_state.approach, 3),
@@ -393,7 +398,10 @@ def _rigid_member_modes(
 
 
 def _relative_displacement(history: History) -> Array:
-    """Relative displacement q (6) [m, rad] of history variables; normal part: of elastic members only."""
+    """Relative displacement q (6) [m, rad] of the sides that is stored in history variables.
+
+    Its normal part is stored for elastic members only.
+    """
     q = np.empty(6)
     q[TANGENTIAL_COMPONENTS], q[NORMAL_COMPONENTS] = history["tangential"], history["normal"]
     return q

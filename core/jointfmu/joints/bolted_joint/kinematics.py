@@ -14,31 +14,34 @@ NORMAL_COMPONENTS, TANGENTIAL_COMPONENTS = slice(2, 5), [0, 1, 5]
 
 
 def rigid_opening(position: Array, relative_displacement: Array) -> Array:
-    """Opening (n) [m] at positions (n, 2) [m]."""
+    """Opening (n) [m] of the interface at positions (n, 2) [m], at a relative displacement q (6).
+
+    The members are rigid.
+    """
     (x, y), (s_z, theta_x, theta_y) = position.T, relative_displacement[NORMAL_COMPONENTS]
     return np.asarray(s_z + theta_x * y - theta_y * x)
 
 
 def opening_jacobian(position: Array) -> Array:
-    """Derivative (n, 6) [1, m] of the opening at positions (n, 2) [m] with respect to q."""
+    """Derivative (n, 6) [1, m] of the opening at positions (n, 2) [m] with respect to the displacement q."""
     J = np.zeros((len(position), 6))
     J[:, 2], J[:, 3], J[:, 4] = 1.0, position[:, 1], -position[:, 0]
     return J
 
 
 def point_displacement(points: PressureDistribution, relative_displacement: Array) -> Array:
-    """Tangential displacement (n, 2) [m] of points along x and along y."""
+    """Tangential displacement (n, 2) [m] of contact points along x and y, for relative displacement q (6)."""
     (x, y), (s_x, s_y, theta_z) = points.position.T, relative_displacement[TANGENTIAL_COMPONENTS]
     return np.stack([s_x - theta_z * y, s_y + theta_z * x], axis=-1)
 
 
 def tangential_displacement(patches: FrictionPatches, relative_displacement: Array) -> Array:
-    """Tangential displacement (m, 3) [m] of patches: along x, along y, and around their centres."""
+    """Tangential displacement (m, 3) [m] of friction patches: along x, along y, and around their centres."""
     return np.column_stack(
         [point_displacement(patches, relative_displacement), relative_displacement[5] * patches.radius]
     )
 
 
 def tangential_jacobian(patches: FrictionPatches) -> Array:
-    """Derivative (3, m, 6) [1, m] of the tangential displacement with respect to q."""
+    """Derivative (3, m, 6) [1, m] of the tangential displacement of the patches with respect to q."""
     return np.stack([tangential_displacement(patches, unit).T for unit in np.eye(6)], axis=-1)

@@ -32,11 +32,12 @@ from ...quantity import (
 MAX_MODES = 16
 """Largest number of modes of the members [1]."""
 MODAL_ENTRIES = ("opening", "patch_x", "patch_y", "patch_around", "stretch")
-"""Entries of [bodies] with the modal displacements."""
+"""Entries of the section [bodies] of a parameter file with the displacements of the members' modes."""
 ELASTIC_SIDE_REQUIREMENTS = {
     "memory": "elastic sides need friction with memory",
     "damping": "the dashpots act between rigid sides only",
 }
+"""{parameter: reason} of the choices that elastic sides prescribe."""
 TIGHTENING_TEMPERATURE = 293.15
 """Temperature [K] of bolts and members at tightening: 20 degrees C."""
 MAX_EXPANSION_COEFFICIENT = 1e-3
@@ -212,6 +213,7 @@ class BoltParameters:
         return self.sides == "elastic"
 
     def _check_elastic_sides(self) -> None:
+        """Raise ValueError if parameters contradict the choice of elastic sides."""
         if isinstance(self.bodies, RigidBodies):
             raise ValueError(
                 "sides = elastic needs the section [bodies]; `jointfmu new bolted-joint` writes it"

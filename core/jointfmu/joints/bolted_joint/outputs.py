@@ -51,6 +51,7 @@ _TRACTION_SUM_NAMES, _SHEAR_STIFFNESS_SUMS = (
     ("shear_stiffness_x", "shear_stiffness_y", "torsional_stiffness"),
 )
 _ELONGATION_SUM_NAMES = CONTACT_SUM_NAMES[-3:]
+"""Names of the sums over the bolts: elongation by the modes, and its first moments."""
 
 
 def first_moments(points: PressureDistribution, sum_name: str, point_values: Array) -> dict[str, Number]:
@@ -131,7 +132,9 @@ def correct_sums_for_bolt_gaps(
     bolt_force: Array,
     contact_sums: Mapping[str, Number],
 ) -> dict[str, Number]:
-    """Sums of a joint with rigid members that change where bolt heads lift off: gaps and normal stiffness.
+    """Add gaps under bolt heads to the sums of a joint with rigid members, where heads lift off.
+
+    The gaps change the bolt elongation and the normal stiffness.
 
     elongation : (b) [m] since tightening
     bolt_force : (b) [N] at tightening
@@ -156,7 +159,9 @@ def elastic_member_sums(
     bolt_force: Array,
     loop_energy: Number,
 ) -> dict[str, Number]:
-    """Sums that elastic members change: stiffness of the complete joint, bolt elongation, elastic energy.
+    """Sums of the complete joint in place of those of the interface, for a joint with elastic members.
+
+    These are the stiffness, the bolt elongation and the elastic energy.
 
     bolt_force  : (b) [N] at tightening
     loop_energy : [J/m2] of the friction patches
@@ -298,7 +303,7 @@ def _ratio_or_zero(numerator: Number, denominator: Number) -> Number:
 
 
 def _friction_utilization(contact_sums: Mapping[str, Number], mu: Number) -> Number:
-    """Shear force over the friction limit [1]."""
+    """Friction utilization [1]: shear force over the friction limit."""
     square = contact_sums["traction_x"] ** 2 + contact_sums["traction_y"] ** 2
     shears = square > 0.0
     return _ratio_or_zero(

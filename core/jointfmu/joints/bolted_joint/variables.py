@@ -30,22 +30,27 @@ _MIN_RAMP_END_PRELOAD = 30e3
 _MIN_LOOP_PRELOAD = 9e3
 """Smallest preload of the load cycle [N], if none is stated: preload of the published pressures."""
 _NORMAL_INPUTS = ("preload", "moment", "temperature", "s_rel_z", "theta_x", "theta_y")
+"""Names of the inputs that change the contact pressure."""
 _INTERFACE_OUTPUTS = ("C_xx", "C_yy", "C_zz", "eta_t", "eta_n")
+"""Names of the outputs of the interface alone: damping and loss factors."""
 _UNDAMPED_STEP_ADVICE = (
     "; 0 at the defaults, because C_zz = 0: then use model exchange, a sequential master or one FMU of the "
     "system (jointfmu system), or damp the body along z by a part of your own"
 )
 """What to do where no step is stable for a parallel master."""
 _MOTION_INPUTS = (*_NORMAL_INPUTS, "s_rel_x", "s_rel_y", "theta_z")
+"""Names of all inputs except the rates."""
 
 
 def _read_vector(inputs: VariableValues, vector_name: str) -> tuple[float, float, float]:
+    """Vector (3) of the inputs NAME_x, NAME_y and NAME_z."""
     return inputs[f"{vector_name}_x"], inputs[f"{vector_name}_y"], inputs[f"{vector_name}_z"]
 
 
 def _advance_spring(
     spring: BoltedJointSpring, inputs: VariableValues, history: Any
 ) -> tuple[Mapping[str, float], Any]:
+    """Outputs and new history variables of a joint after a straight path to the inputs {name: value}."""
     q = np.array([*_read_vector(inputs, "s_rel"), *_read_vector(inputs, "theta")])
     rates = (*_read_vector(inputs, "v_rel"), *_read_vector(inputs, "omega"))
     return spring.advance(

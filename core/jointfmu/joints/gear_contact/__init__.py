@@ -61,3 +61,4 @@ KIND = JointKind(
     models=MODELS,
     surfaces=(RoughSurface("surface1", direction="x"), RoughSurface("surface2", direction="y")),
 )
+"""Description of the gear contact for builders and tools."""

@@ -11,6 +11,7 @@ from .spring import (
 )
 
 _ANGLE_INPUTS = ("phi1", "phi2")
+"""Names of the inputs with the angles of the two wheels."""
 _RAMP_DEFLECTION_RATIO = 0.3
 """Deflection at the end of the load ramp over deflection at the end of the table [1]."""
 
@@ -79,3 +80,4 @@ KIND = JointKind(
     models=MODELS,
     surfaces=(RoughSurface("surface1", direction="x"), RoughSurface("surface2", direction="y")),
 )
+"""Description of the gear mesh for builders and tools."""

@@ -81,7 +81,7 @@ def base_pitch(mesh: MeshParameters) -> Number:
 
 
 def deflection(mesh: MeshParameters, motion: Sequence[Number]) -> Number:
-    """Deflection s_rel [m] along the line of action at (phi1, w1, phi2, w2) [rad, rad/s].
+    """Deflection s_rel [m] of the mesh along the line of action, at wheel motions (phi1, w1, phi2, w2).
 
     It is r_b1 phi1 + r_b2 phi2, reduced in magnitude by half the backlash; 0 within the backlash.
     """
@@ -92,7 +92,10 @@ def deflection(mesh: MeshParameters, motion: Sequence[Number]) -> Number:
 
 
 def mesh_phase(mesh: MeshParameters, motion: Sequence[Number]) -> Number:
-    """Phase xi [1] of the mesh cycle at (phi1, w1, phi2, w2): mean rolling distance over the base pitch."""
+    """Phase xi [1] of the mesh cycle at wheel motions (phi1, w1, phi2, w2).
+
+    It is the mean rolling distance over the base pitch.
+    """
     phi1, _, phi2, _ = motion
     return 0.5 * (mesh.r_b1 * phi1 - mesh.r_b2 * phi2) / base_pitch(mesh)
 
@@ -113,7 +116,7 @@ def combine_in_series(
 
 
 def tabulate_tooth_pair(mesh: MeshParameters) -> tuple[Curve, float]:
-    """Table of load [N] over deflection [m] of a tooth pair, and the deflection [m] at the end of closing.
+    """Table of load [N] over deflection [m] of one tooth pair, and its deflection [m] at the end of closing.
 
     Closing is the first part of the contact, see `curve.closing_pressure`. Deflections count from first
     contact. The nodes are those of the flanks' curve, where load, stiffness and its derivative are exact; the
@@ -128,7 +131,7 @@ def tabulate_tooth_pair(mesh: MeshParameters) -> tuple[Curve, float]:
 
 
 def _tabulate_with_steps(mesh: MeshParameters, flank_curve: Curve, steps_per_segment: int) -> Curve:
-    """Table of a tooth pair; each segment of the flanks' curve is divided into `steps_per_segment` steps."""
+    """Table of load over deflection of a tooth pair, with some steps per segment of the flanks' curve."""
     nodes = flank_curve.displacement
     closing_index = int(np.searchsorted(nodes, 0.0))
     t = np.linspace(0.0, 1.0, CLOSING_STEPS * steps_per_segment + 1)

@@ -9,7 +9,7 @@ from .variables import MODELS
 
 
 def _find_flange_ratings(drive: DriveParameters) -> dict[str, FlangeRating]:
-    """Rated values at the wave generator (flange1) and at the output (flange2)."""
+    """Rated torque, motion and friction at the wave generator (flange1) and at the output (flange2)."""
     ratio = abs(drive.ratio)
     friction = float(max(friction_limits(drive, 0.0, 0.0)))
     return {
@@ -34,3 +34,4 @@ KIND = JointKind(
     surfaces=(RoughSurface("surface", is_areal=True),),
     find_flange_ratings=_find_flange_ratings,
 )
+"""Description of the harmonic drive for builders and tools."""

@@ -162,7 +162,10 @@ class DriveParameters(ABC):
     @property
     @abstractmethod
     def law(self) -> object:
-        """Interface law of flexspline and bearing; None if the stiffness follows from no interface law."""
+        """Interface law of the contact pair of flexspline and bearing.
+
+        None if the stiffness of the drive follows from no interface law.
+        """
 
     @property
     @abstractmethod
@@ -185,7 +188,10 @@ class DriveParameters(ABC):
 
     @property
     def effective_load_loss_back(self) -> Number:
-        """Loss [1] if the load drives the motor: load_loss_back, or load_loss if that is negative."""
+        """Share of the load torque [1] lost by friction if the load drives the motor.
+
+        It is load_loss_back, or load_loss if that is negative.
+        """
         return select(self.load_loss_back < 0.0, self.load_loss, self.load_loss_back)
 
     @property
@@ -205,7 +211,7 @@ class DriveParameters(ABC):
         ]
 
     def find_table_parameter_limits(self) -> list[ParameterLimit]:
-        """Further parameter limits: those that a table up to the last torque requires."""
+        """Parameter limits that a table of torque over wind-up up to the last torque requires."""
         return []
 
 
@@ -227,7 +233,7 @@ def kinematic_error(drive: DriveParameters, phi1: Number) -> tuple[Number, Numbe
 
 
 def compute_harmonics(angle: Number, orders: Sequence[int]) -> dict[int, tuple[Number, Number]]:
-    """{n: (sin(n angle), cos(n angle))} of orders n that are powers of 2, by the formulas of the double angle.
+    """{n: (sin(n angle), cos(n angle))} of orders n that are powers of 2, by the double-angle formulas.
 
     Sine and cosine are evaluated once: they take a large part of the time of a drive.
     """

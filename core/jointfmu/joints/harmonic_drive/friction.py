@@ -35,13 +35,15 @@ from .drive import FRICTION_HARMONICS, PLAY_WIDTH_RATIO, DriveParameters, comput
 from .hysteresis import slider_shares
 
 FRICTION_SLIDERS = 8
-"""Number of sliders: friction from the virgin state is then within 1 % of M of Dahl's curve."""
+"""Number of sliders of the friction [1]: from the virgin state it is then within 1 % of M of Dahl's curve."""
 HISTORY_LAYOUT = HistoryLayout(
     {"friction_torque": (FRICTION_SLIDERS,), "angle": (), "limit": (2,), "begun": ()}
 )
 """History variables: slider torques [N.m], phi1 [rad], friction limits [N.m], 1 after the first step."""
 _REMAINING_FRICTION_SHARES = (*(np.linspace(1.0, 0.0, FRICTION_SLIDERS, endpoint=False) ** 2).tolist(), 0.0)
+"""Shares of the friction that is not yet mobilised [1], from 1 to 0, that separate the sliders."""
 _SLIDER_STIFFNESS_AND_LIMIT_SHARES = slider_shares(1.0, _REMAINING_FRICTION_SHARES)
+"""Shares of each slider in the total stiffness and in the total limit [1]."""
 SLIDER_STIFFNESS_SHARES = np.array(_SLIDER_STIFFNESS_AND_LIMIT_SHARES[0])
 SLIDER_LIMIT_SHARES = np.array(_SLIDER_STIFFNESS_AND_LIMIT_SHARES[1])
 """Shares [1] of each slider in the total spring stiffness M/presliding and in the total limit M."""
@@ -57,6 +59,7 @@ def dry_friction_factor(drive: DriveParameters, temperature: Number) -> Number:
 
 
 def _temperature_factor(temperature_coefficient: Number, temperature: Number) -> Number:
+    """Factor [1] on a viscosity or friction at temperatures (...) [K], by Reynolds' law."""
     return np.exp(-temperature_coefficient * (temperature - REFERENCE_TEMPERATURE))
 
 
@@ -74,8 +77,8 @@ def friction_limits(
     temperature : (...) [K]
     phi1        : (...) [rad] angle of the wave generator; None: mean over a turn
 
-    Both functions of the sign of tau are smooth, with t = PLAY_WIDTH_RATIO rated_torque: |tau| is
-    tau tanh(tau/t), and the weight of load_loss_back is (1 +- tanh(tau/t))/2.
+    Two functions of the sign of tau are replaced by smooth ones, with t = PLAY_WIDTH_RATIO rated_torque:
+    |tau| is tau tanh(tau/t), and the weight of load_loss_back is (1 +- tanh(tau/t))/2.
     """
     load_sign = np.tanh(tau / (PLAY_WIDTH_RATIO * drive.rated_torque))
     size = tau * load_sign / np.abs(drive.ratio)
@@ -122,13 +125,13 @@ class FrictionSliders(Sliders):
 
     @classmethod
     def for_drive(cls, drive: DriveParameters) -> "FrictionSliders":
-        """Sliders for the parameters of a drive."""
+        """Sliders of the dry friction, from the parameters of a drive."""
         return cls(float(sticking_stiffness(drive)) * SLIDER_STIFFNESS_SHARES)
 
     def advance(
         self, history: Array, phi1: ArrayLike, w1: ArrayLike, end_friction_limits: Sequence[ArrayLike]
     ) -> SliderUpdate:
-        """Advance the sliders on a straight path to phi1.
+        """Advance the sliders of the dry friction on a straight path to the angle phi1.
 
         history             : (..., n) history variables at the start of the path, see HISTORY_LAYOUT
         phi1                : (...) [rad] angle of the wave generator at the end
@@ -158,7 +161,7 @@ class FrictionSliders(Sliders):
     def pack_history(
         self, slider_update: SliderUpdate, phi1: ArrayLike, end_friction_limits: Sequence[ArrayLike]
     ) -> Array:
-        """New history variables (..., n) after the rotation of this step; all zero without dry friction."""
+        """New history variables (..., n) of the dry friction at phi1; all zero without dry friction."""
         shape = slider_update.dissipated_energy.shape
         if not self.is_active:
             return np.zeros((*shape, HISTORY_LAYOUT.size))

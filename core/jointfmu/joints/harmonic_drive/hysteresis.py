@@ -30,12 +30,15 @@ from .drive import DriveParameters
 from .law import ContactPairDriveParameters, pair_log_area
 
 HYSTERESIS_SLIDERS = 44
-"""Number of sliders: virgin curve within 0.2 % of M_f, loop area within 1 % for amplitudes above 0.1 M_f."""
+"""Number of sliders of the hysteresis [1].
+
+The virgin curve is then within 0.2 % of M_f, the loop area within 1 % for amplitudes above 0.1 M_f."""
 _SLIDER_SHARE_GRADING_RATE, _SLIDER_SHARE_GRADING_EXPONENT = 3.5, 2.5
 """Grading of REMAINING_FRICTION_SHARES [1]: fine where the first sliders slip, coarse where the last do."""
 _MOBILISED_FRICTION_SHARES = np.expm1(
     _SLIDER_SHARE_GRADING_RATE * np.arange(HYSTERESIS_SLIDERS) / HYSTERESIS_SLIDERS
 ) / np.expm1(_SLIDER_SHARE_GRADING_RATE)
+"""Values of 1 - s [1], the mobilised share of friction, that separate the sliders; graded towards 0."""
 HISTORY_LAYOUT = HistoryLayout({"force": (HYSTERESIS_SLIDERS,), "wind_up": (), "loss": ()})
 """History variables of the hysteresis: slider torques [N.m], wind-up [rad], loss [J]."""
 REMAINING_FRICTION_SHARES = (
@@ -99,7 +102,7 @@ class HysteresisSliders(Sliders):
 
     @classmethod
     def for_drive(cls, drive: DriveParameters, curve: Curve) -> "HysteresisSliders":
-        """Sliders for a drive with the odd midline `curve`.
+        """Sliders of the hysteresis, from the parameters of a drive and its odd midline `curve`.
 
         Raises ValueError if no loop through rated torque can open by hysteresis_loss.
         """
@@ -128,7 +131,7 @@ class HysteresisSliders(Sliders):
         return float(np.sum(self.friction_limit) / np.sum(self.stiffness))
 
     def unloading_friction(self, curve: Curve, torque: float, half_opening_angle: float) -> float:
-        """Negative friction torque [N.m] on unloading from a torque to the wind-up half_opening_angle.
+        """Negative friction torque [N.m] after unloading from a torque to the wind-up half_opening_angle.
 
         torque, half_opening_angle : [N.m], [rad]
 
@@ -142,19 +145,24 @@ class HysteresisSliders(Sliders):
         return float(2.0 * friction_back - friction_at_turn)
 
     def advance(self, history: Array, phi: ArrayLike) -> SliderUpdate:
-        """Advance the sliders from history variables (..., n) on a path to wind-ups phi (...) [rad]."""
+        """Advance the sliders of the hysteresis from a history (..., n) to wind-ups phi (...) [rad]."""
         variables = HISTORY_LAYOUT.split(history)
         increment = np.asarray(phi, dtype=np.float64) - variables["wind_up"]
         return self.advance_1d(variables["force"], increment, self.friction_limit, self.friction_limit)
 
     def pack_history(self, slider_update: SliderUpdate, phi: ArrayLike, total_loss: Array) -> Array:
-        """New history variables (..., n) after the path to phi (...) [rad]; loss (...) [J] is the total."""
+        """New history variables (..., n) of the hysteresis at wind-ups phi (...) [rad].
+
+        The loss total_loss (...) [J] is the energy dissipated so far.
+        """
         return HISTORY_LAYOUT.join(
             {"force": slider_update.force, "wind_up": phi, "loss": total_loss}, *total_loss.shape
         )
 
     def solve_wind_up(self, curve: Curve, history: Array, torque: ArrayLike) -> Array:
-        """Wind-up (...) [rad] at torques (...) [N.m] of midline plus friction, from a history (..., n).
+        """Wind-up (...) [rad] at which midline and friction together carry torques (...) [N.m].
+
+        Starts from history variables (..., n).
 
         Safeguarded Newton iteration: the total torque increases monotonically with the wind-up. The iteration
         starts at the present wind-up, limited to the range in which not all sliders slip.

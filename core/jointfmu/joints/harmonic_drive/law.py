@@ -110,6 +110,7 @@ class ContactPairDriveParameters(DriveParameters):
 
     @property
     def _deformation_pressure_reduction(self) -> float:
+        """Reduction of the peak pressure [Pa] by a radial deformation that is not the optimum."""
         return self.deformation_loss * (self.radial_deformation - self.optimum_deformation) ** 2
 
     @property
@@ -244,9 +245,11 @@ def peak_pressure(drive: ContactPairDriveParameters, torque: Number) -> tuple[Nu
         return (saturation * x) ** 2 / root, saturation * x / (bend * root)
 
     def smoothed_torque(squared_torque: Number) -> Number:
+        """Function g [N.m] of the squared saturated torque: its magnitude, smoothed around zero."""
         return np.maximum(np.sqrt(squared_torque + smoothing**2), smoothing)  # if smoothing**2 underflows
 
     def smoothed_torque_increase(squared_torque: Number) -> Number:
+        """Derivative of the function g [1/(N.m)] by the squared saturated torque."""
         return squared_torque / (smoothed_torque(squared_torque) + smoothing)
 
     zero, rated = drive.zero_torque_pressure, drive.rated_pressure
@@ -259,7 +262,10 @@ def peak_pressure(drive: ContactPairDriveParameters, torque: Number) -> tuple[Nu
 
 
 def pair_log_area(drive: ContactPairDriveParameters, torque: Number) -> Number:
-    """Log-area u (...) [1] of the largest spot, at the mean pressure of the pair at torques (...) [N.m]."""
+    """Log-area u (...) [1] of the largest spot of the contact pair at torques (...) [N.m].
+
+    It follows from the mean pressure.
+    """
     law = drive.pair_law
     start, power = law.spot_distribution().log_sum_over_spots("load", 0.0)
     return (np.log(drive.mean_over_peak * peak_pressure(drive, torque)[0] * law.A_0) - start) / power
@@ -281,14 +287,17 @@ def pair_stiffness(drive: ContactPairDriveParameters, torque: Number) -> tuple[N
 
 
 def drive_stiffness(drive: ContactPairDriveParameters, torque: Number) -> tuple[Number, Number]:
-    """Stiffness K_WTS (...) [N.m/rad] by Eq. 46, 1/K_WTS = 1/K_FTS + 1/K_TS, and dK_WTS/dT [1/rad]."""
+    """Stiffness K_WTS (...) [N.m/rad] of the drive without lost motion, Eq. 46, and dK_WTS/dT [1/rad].
+
+    1/K_WTS = 1/K_FTS + 1/K_TS.
+    """
     pair, growth = pair_stiffness(drive, torque)
     total = 1.0 / (1.0 / drive.K_FTS0 + 1.0 / pair)
     return total, (total / pair) ** 2 * growth
 
 
 def stiffness_with_play(drive: ContactPairDriveParameters, torque: Number) -> tuple[Number, Number]:
-    """Stiffness K_WTS (...) [N.m/rad] of the law and the lost motion in series, and dK_WTS/dT [1/rad]."""
+    """Stiffness K_WTS (...) [N.m/rad] of the drive with its lost motion in series, and dK_WTS/dT [1/rad]."""
     K, growth = drive_stiffness(drive, torque)
     _, compliance, change = lost_motion_angle(drive, torque)
     softer = 1.0 + K * compliance

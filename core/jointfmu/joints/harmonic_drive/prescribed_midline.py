@@ -28,7 +28,9 @@ DEFAULT_CORNER_HALF_WIDTH_RATIO = 0.04
 """Default half-width of a smoothed corner over its wind-up [1]: for catalogue drives the angle at a corner is
 then within 0.4 % of the lines."""
 MIN_CORNER_HALF_WIDTH_RATIO = 1e-6
-"""Smallest half-width [1], used if `corner` is 0: the angle at a corner is within 1e-7 of the lines."""
+"""Smallest half-width of a corner over its wind-up [1], used if `corner` is 0.
+
+The angle at a corner is within 1e-7 of the lines."""
 MAX_STIFFNESS = 1e12
 """Largest stiffness of a drive [N.m/rad]: more than that of a solid steel shaft of its size."""
 MAX_TABLE_POINTS = 1000
@@ -39,10 +41,15 @@ MIN_STIFFNESS_RATIO = 0.5
 """Smallest stiffness inside a segment, over its mean or its end stiffness [1], for which the derivative of
 the stiffness is made continuous at its points."""
 PLAY_NODE_COUNT = 60
-"""Nodes for the play on the first line of a catalogue drive: the torque error is below 1e-8 rated_torque."""
+"""Number of nodes for the lost motion on the first line of a catalogue drive [1].
+
+The torque error is below 1e-8 rated_torque."""
 PLAY_END_TORQUE_RATIO = 8.0
-"""Torque over T_p of the play [1] at which the play has ended: 2e-7 of lost_motion is missing."""
+"""Torque over T_p at which the lost motion has ended [1]: 2e-7 of lost_motion is then missing.
+
+T_p is the torque of PLAY_WIDTH_RATIO."""
 _SEGMENT_SAMPLE_POINTS = np.linspace(0.0, 1.0, 33)
+"""Relative positions in a segment [1] at which the stiffness of the midline is checked."""
 
 
 class SplineNode(NamedTuple):
@@ -73,7 +80,7 @@ class PrescribedDriveParameters(DriveParameters):
 
     @abstractmethod
     def make_midline_nodes(self) -> Sequence[SplineNode]:
-        """Nodes of the midline from zero wind-up on; the midline is odd."""
+        """Spline nodes of the midline (torque over wind-up) from zero wind-up on; the midline is odd."""
 
     @property
     def law(self) -> None:
@@ -185,7 +192,7 @@ class CatalogueDriveParameters(PrescribedDriveParameters):
         return self.T1 - self.K1 * self.corner_half_width_ratio * self.corner_angles[0]
 
     def make_midline_nodes(self) -> list[SplineNode]:
-        """Nodes of the first line with the play, then both ends of each corner, then the end of the table."""
+        """Nodes of the midline: first line with lost motion, both ends of each corner, end of the table."""
         (first, second), (K1, K2, K3) = self.corner_angles, (self.K1, self.K2, self.K3)
         first_width = self.corner_half_width_ratio * first
         second_width = self.corner_half_width_ratio * second
@@ -201,7 +208,7 @@ class CatalogueDriveParameters(PrescribedDriveParameters):
         ]
 
     def _play_nodes(self) -> list[SplineNode]:
-        """Nodes of the first line of the catalogue with the lost motion in series; denser at small torque."""
+        """Nodes of the first catalogue line in series with the lost motion; denser at small torque."""
         end_torque = np.minimum(
             PLAY_END_TORQUE_RATIO * PLAY_WIDTH_RATIO * self.rated_torque, self._first_line_torque
         )
@@ -285,7 +292,7 @@ class TableDriveParameters(MeasuredDriveParameters):
         )
 
     def make_midline_nodes(self) -> list[SplineNode]:
-        """Nodes at zero and at each point of the table."""
+        """Nodes of the midline: at zero, and at each point of the measured table."""
         x, y = (np.array([0.0, *values]) for values in (self.table.angle, self.table.torque))
         h, torque_steps = np.diff(x), np.diff(y)
         s = _node_stiffness(h, torque_steps / h)
@@ -304,7 +311,7 @@ class TableDriveParameters(MeasuredDriveParameters):
 
 
 def _node_stiffness(segment_widths: Array, secant_stiffnesses: Array) -> Array:
-    """Stiffness (n + 1) at the points of an odd curve, from widths (n) and secant stiffnesses (n)."""
+    """Stiffness (n + 1) at the nodes of an odd midline, from segment widths and secant stiffnesses (n)."""
     weight_left = 2.0 * segment_widths[1:] + segment_widths[:-1]
     weight_right = segment_widths[1:] + 2.0 * segment_widths[:-1]
     inner = (weight_left + weight_right) / (
@@ -336,7 +343,7 @@ def _sample_stiffness(
     stiffness_slope_after: Array,
     stiffness_slope_before: Array,
 ) -> Array:
-    """Stiffness (m, n) at m sample points inside each of n quintic segments.
+    """Stiffness (m, n) of the midline at m sample points inside each of n quintic segments.
 
     segment_widths, torque_steps                  : (n) widths and torque increments of the segments
     node_stiffness                                : (n + 1) stiffness at the nodes

@@ -21,6 +21,7 @@ MIN_TABLE_STEPS = 160
 MIN_STIFFNESS, MIN_STIFFNESS_MARGIN = 1e-100, 1e-6
 """Smallest K_WTS [N.m/rad], and smallest K_FTS0/K_TS [1], for which the table can be computed."""
 GAUSS_RULE = np.polynomial.legendre.leggauss(4)
+"""Nodes and weights of the Gauss-Legendre quadrature of dT/K_WTS."""
 HISTORY_LAYOUT = hysteresis.HISTORY_LAYOUT | friction.HISTORY_LAYOUT
 """History variables of the drive: hysteresis, then friction."""
 
@@ -165,7 +166,9 @@ def _split_history(history: Array) -> tuple[Array, Array]:
 
 @dataclass(frozen=True, slots=True)
 class SpringState:
-    """State of the spring at a motion: numbers, arrays or symbols.
+    """State of the drive's spring at a motion: wind-up, midline, hysteresis and kinematic error.
+
+    Values are numbers, arrays or symbols.
 
     phi_rel           : [rad] wind-up
     midline_torque    : [N.m] torque of the midline

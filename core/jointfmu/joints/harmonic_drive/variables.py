@@ -21,16 +21,22 @@ _COMMON_OUTPUTS = (
     Variable("p_max", "Pa", "peak contact pressure, at the major axis and the cup's opening", 1e8),
     Variable("E_loss", "J", "energy dissipated by hysteresis and dry friction since initialization", 1e-3),
 )
+"""Outputs that both models of the harmonic drive have."""
 
 _ANGLE_INPUTS = ("phi1", "phi2")
+"""Names of the inputs with the angles of the flanges."""
 _FLANGE_MOTION_INPUTS = ("phi1", "w1", "phi2", "w2")
+"""Names of the inputs with the angles and speeds of the flanges."""
 _FIXED_PARAMETERS = ("max_torque", "shear_traction", "table")
+"""Names of parameters that the FMUs do not expose."""
 _LOAD_CYCLE_SETTINGS = {"hysteresis_loss": 3e-4, "hysteresis_stiffness": 8e3}
 """Parameters of the load cycle: hysteresis of one arcmin; the default drive has no hysteresis."""
 _LINEAR_SPEED_FACTORS = {"w2": "parameters"}
+"""Inputs on which torques depend linearly, with a factor of the parameters alone, see `Model`."""
 _KINEMATIC_ERROR_PARAMETERS = tuple(
     f"error_{n}{what}" for n in KINEMATIC_ERROR_HARMONICS for what in ("", "_phase")
 )
+"""Names of the parameters of the kinematic error."""
 _FRICTION_PARAMETERS = (
     "friction_coulomb",
     "friction_stribeck",
@@ -40,11 +46,13 @@ _FRICTION_PARAMETERS = (
     "load_loss_back",
     *(f"friction_{n}{what}" for n in FRICTION_HARMONICS for what in ("", "_phase")),
 )
+"""Names of the parameters of the friction limit."""
 _TEMPERATURE_PARAMETERS = (
     "temperature_factor",
     "viscous_temperature_coefficient",
     "dry_temperature_coefficient",
 )
+"""Names of the parameters by which friction depends on temperature."""
 _SPRING_PARAMETERS = (
     *_FRICTION_PARAMETERS,
     "presliding",
@@ -53,6 +61,7 @@ _SPRING_PARAMETERS = (
     "inertia1",
     "inertia2",
 )
+"""Names of the parameters that only the model with motion as input has."""
 
 
 def _flange_motion(inputs: VariableValues) -> tuple[float, ...]:

@@ -1,1 +1,1 @@
-"""Pressure distribution over the contact of a bolted joint, and its reduction to few points and patches."""
+"""Pressure over the contact area of a bolted joint, and its reduction to few points and patches."""

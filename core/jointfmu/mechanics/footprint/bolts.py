@@ -11,8 +11,11 @@ from .distribution import NodalField, PositionMeans, PressureDistribution, posit
 from .plate import EDGE_TOLERANCE_FACTOR, BoltedPlate
 
 CELLS_ACROSS_FLANGE = 7
-"""Number of cells across the flange [1]: 1000 nodes for the default frame; Zhao's mesh has 1019."""
+"""Number of square area cells across the flange of the frame [1]: 1000 nodes for the default frame.
+
+Zhao's mesh has 1019."""
 _CELL_SUBDIVISIONS = 8
+"""Number of parts of the side of a cell [1], for the area that a hole removes from the cell."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -72,7 +75,7 @@ class BoltedFrame:
         return np.asarray((1.0 + (distance / self.decay_length) ** 2) ** -self.decay_exponent)
 
     def pressure_distribution(self) -> PressureDistribution:
-        """Pressure distribution at the cells of the frame."""
+        """Pressure distribution at the centroids of square area cells of the frame."""
         areas, points = frame_cells(self)
         unit = bolt_pressures(self, areas, points, points) * areas.sum()
         centroid = np.average(points, axis=0, weights=areas)
@@ -85,7 +88,7 @@ class BoltedFrame:
 
 
 def frame_cells(frame_geometry: BoltedFrame) -> tuple[Array, Array]:
-    """Areas (n) [m2] and centroids (n, 2) [m] of square cells of the frame, without the holes."""
+    """Areas (n) [m2] and centroids (n, 2) [m] of square cells that divide the frame, without the holes."""
     size = frame_geometry.flange_width / CELLS_ACROSS_FLANGE
     half = 0.5 * np.array([frame_geometry.column_spacing, frame_geometry.row_spacing])
     outer, inner = half + 0.5 * frame_geometry.flange_width, half - 0.5 * frame_geometry.flange_width
@@ -98,6 +101,7 @@ def frame_cells(frame_geometry: BoltedFrame) -> tuple[Array, Array]:
     area = 4.0 * outer[0] * outer[1] / solid.size
 
     def sum_cell_values(values: Array) -> Array:
+        """Sum the values of the subdivisions of each cell."""
         blocks = (values * solid).reshape(count[0], _CELL_SUBDIVISIONS, count[1], _CELL_SUBDIVISIONS)
         return np.asarray(blocks.sum(axis=(1, 3)).ravel())
 
@@ -110,13 +114,14 @@ def frame_cells(frame_geometry: BoltedFrame) -> tuple[Array, Array]:
 def bolt_pressures(
     frame_geometry: BoltedFrame, areas: Array, cell_points: Array, evaluation_points: Array
 ) -> Array:
-    """Pressure (8, k) [Pa] by 1 N in each of the eight bolts.
+    """Contact pressure (8, k) [Pa] of a bolted frame by 1 N in each of its eight bolts.
 
     areas, cell_points : (n) [m2], (n, 2) [m] of the cells; the pressure of each bolt sums to 1 N over them
     evaluation_points  : (k, 2) [m] at which the pressure is computed
     """
 
     def unscaled_pressure(positions: Array) -> Array:
+        """Pressure of each bolt at positions, before it is scaled to a force of 1 N."""
         offset = positions[None, :, :] - frame_geometry.bolts_from_middle[:, None, :]
         return frame_geometry.pressure_decay(np.hypot(offset[..., 0], offset[..., 1]))
 

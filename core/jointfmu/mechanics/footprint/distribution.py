@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ...quantity import Array, check_fields, quantity_field, series_field
 
 NODAL_FIELD_BALANCE_TOLERANCE = 1e-6
-"""Largest error of the sums and means of a nodal field [1]."""
+"""Largest error of the sums and means that a nodal pressure field of a file must have [1]."""
 PRESSURE_DECIMALS = 11
 """Decimals to which pressures of nodes are compared [1]: symmetric nodes then agree."""
 
@@ -33,13 +33,13 @@ class PressureDistribution:
 
     @property
     def rows(self) -> list[Array]:
-        """Arrays (n) of all numbers: share, x, y, both pressure ratios, and the radius of patches."""
+        """Arrays (n) of all numbers of the nodes: share, x, y, both pressure ratios, radius of patches."""
         share, position, *others = (getattr(self, item.name) for item in fields(self))
         return [share, *position.T, *others]
 
     @classmethod
     def from_rows(cls, rows: Sequence[Array] | Array) -> Self:
-        """Distribution with the numbers of `rows`."""
+        """Make a pressure distribution from arrays in the order of `rows`."""
         share, x, y, *others = rows
         return cls(share, np.column_stack([x, y]), *others)
 
@@ -105,7 +105,7 @@ def moment_pressure(area_share: Array, y: Array, preload_pressure_ratio: Array) 
 
 
 BOLT_POSITION_MEAN_NAMES = ("bolt_x", "bolt_y", "bolt_x2", "bolt_y2", "bolt_xy")
-"""Entries of a nodal field for the positions of its bolts, in the order of `position_means`."""
+"""Keys of the section [field] for the means of its bolt positions, in the order of `position_means`."""
 PositionMeans: TypeAlias = tuple[float, float, float, float, float]
 
 
@@ -132,9 +132,9 @@ class MergedDistribution:
 
 
 _POINT_ENTRIES = ("share", "x", "y", "equal", "tilt")
-"""Entries of a nodal field for its points."""
+"""Keys of the section [field] of a parameter file for the contact points."""
 PATCH_PREFIX = "patch_"
-"""Prefix of the entries of a nodal field for its friction patches."""
+"""Prefix of the keys of the section [field] of a parameter file for the friction patches."""
 MAX_PATCHES = 22
 """Largest number of friction patches of a joint [1], each with sliders."""
 
@@ -297,5 +297,6 @@ class NodalField:
         return replace(patches, radius=np.array(self.patch_radius)) if self.patch_radius else patches
 
     def _make_distribution(self, entry_prefix: str) -> PressureDistribution:
+        """Pressure distribution of the points (prefix "") or of the friction patches."""
         share, x, y, equal, tilt = (np.array(getattr(self, entry_prefix + name)) for name in _POINT_ENTRIES)
         return PressureDistribution(share, np.column_stack([x, y]), equal, tilt)

@@ -68,7 +68,10 @@ def select_independent(
 
 
 def solve_linear(matrix: Array, right_side: Array) -> Array:
-    """Solve a linear system with a positive definite matrix (n, n) by Gaussian elimination; solution (n)."""
+    """Solve a linear system with a positive definite matrix (n, n) by Gaussian elimination.
+
+    Returns the solution (n); the order of all operations is fixed.
+    """
     rows, out = np.column_stack([matrix, right_side]), np.zeros_like(right_side)
     for k in range(len(out) - 1):
         rows[k + 1 :, k:] -= (rows[k + 1 :, k] / rows[k, k])[:, None] * rows[k, k:]
@@ -78,7 +81,7 @@ def solve_linear(matrix: Array, right_side: Array) -> Array:
 
 
 def weight_changes(weights: Array, function_values: Array, sum_changes: Array) -> Array:
-    """Changes (n) of weights (n) that give required changes (m) of the weighted sums of functions (m, n).
+    """Smallest changes (n) of weights (n) that change the weighted sums of functions (m, n) as required (m).
 
     The sum of change^2/|weight| is minimal. Functions that depend linearly on others are ignored.
     """

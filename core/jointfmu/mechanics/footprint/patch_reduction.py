@@ -45,12 +45,14 @@ UNTILTED_CASE_SHARE = 0.4
 MAX_OPENING_RATIO, MAX_TILT_OPENING_RATIO = 0.1, 0.2
 """Largest normal displacement, and largest opening by tilt at the edge, over the largest approach [1]."""
 MAX_MOMENT_RATIO = 2.5
-"""Largest moment over that of `largest_moment_factor` [1]."""
+"""Largest moment of the cases, over the moment that opens part of the contact [1].
+
+The latter is that of `largest_moment_factor`."""
 MIN_MOTION_LENGTH, MAX_MOTION_LENGTH = 0.05, 3.0
 """Shortest and longest motion [1], over the motion at which a node at the radius of gyration has mobilised
 all but UNMOBILISED_FRICTION_SHARE of its friction."""
 UNMOBILISED_FRICTION_SHARE = 2.0**-13
-"""Share of the friction that is not yet mobilised [1], for the scale of motions."""
+"""Share of the friction that is not yet mobilised [1], at the motion to which lengths are relative."""
 FIT_ITERATIONS = 50
 """Iterations of the Levenberg-Marquardt method [1]."""
 INITIAL_MARQUARDT_DAMPING, MIN_MARQUARDT_DAMPING = 1e-2, 1e-6
@@ -60,9 +62,9 @@ MARQUARDT_DAMPING_DECREASE, MARQUARDT_DAMPING_INCREASE = 0.2, 5.0
 MAX_RELATIVE_STEP = 0.5
 """Largest relative change of a share, position or pressure in one step [1]."""
 MIN_NORMAL_DIAGONAL_RATIO = 1e-9
-"""Smallest diagonal of the normal equations used for damping, over the largest [1]."""
+"""Smallest diagonal entry of the normal equations used for damping, over the largest entry [1]."""
 EXACT_SUM_WEIGHT = 400.0
-"""Weight of an exact sum over the weight of a case [1]."""
+"""Weight of a sum that must be kept exactly, over the weight of a case of friction [1]."""
 RELATIVE_PERTURBATION = 1e-6
 """Relative perturbation of a position or pressure for finite differences [1]."""
 NODES_PER_BATCH = 2000
@@ -84,6 +86,7 @@ NODE_DIVISION_PRESSURE_OFFSET, LLOYD_ITERATIONS = 0.1, 5
 """Pressure over mean pressure [1] that is added to that of each node for the division among patches, and
 number of iterations of the division [1]."""
 SMALLEST_FLOAT = float(np.finfo(float).tiny)
+"""Smallest normal float: replaces 0 in divisions."""
 _LOW_DISCREPANCY_INCREMENTS = successive_powers(1.0 / 1.0969815577985598, 7)
 """Increments of a low-discrepancy sequence in seven dimensions [1]: powers of 1/x with x^8 = x + 1."""
 SLIDER_CIRCLE_POINTS = round_to_digits(
@@ -160,6 +163,7 @@ def _divide_nodes_among_patches(distribution: PressureDistribution, patch_centre
     )
 
     def sum_over_nodes(values: Array) -> Array:
+        """Sum values (n) of the nodes over the nodes of each patch."""
         return np.asarray(np.bincount(nearest, values, count))
 
     for _ in range(LLOYD_ITERATIONS):

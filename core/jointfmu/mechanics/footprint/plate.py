@@ -8,15 +8,15 @@ from ...quantity import Array, check_fields, quantity_field, series_field
 from .distribution import PositionMeans, PressureDistribution, moment_pressure, position_means
 
 MIN_CELLS_PER_RADIUS = 5
-"""Smallest number of cells [1] from the axis of a bolt to the edge R of its pressure."""
+"""Smallest number of area cells [1] from the axis of a bolt to the radius R at which its pressure ends."""
 COARSE_CELL_COUNT = 8
-"""Number of cells [1] along the longer side of the plate where there is no pressure."""
+"""Number of area cells [1] along the longer side of the plate where there is no pressure."""
 _HOLE_SUBDIVISIONS = 8
-"""Subdivisions of the side of a cell [1] for the area that a hole removes."""
+"""Number of parts of the side of an area cell [1], for the area that a hole removes from the cell."""
 _ONE_ROW_TOLERANCE = 1e-6
 """Extent of the bolt positions along y over the width of the plate [1], below which they are one row."""
 EDGE_TOLERANCE_FACTOR = 1.0 + 1e-9
-"""Relative tolerance of comparisons with an edge: points on an edge then do not depend on round-off [1]."""
+"""Factor on distances that are compared with an edge [1]: points on it then do not depend on round-off."""
 _MAX_ITERATIONS, _MOMENT_ARM_TOLERANCE = 50, 1e-13
 """Largest number of Newton iterations [1], and tolerance of the moment of a bolt's pressure over R [1]."""
 
@@ -114,12 +114,12 @@ class BoltedPlate:
 
     @property
     def coarse_cell_counts(self) -> Array:
-        """Number of cells (2) [1] along x and y before refinement."""
+        """Number of area cells (2) [1] along x and y, before cells under bolts are divided."""
         plan = np.array([self.length, self.width])
         return np.asarray(np.maximum(np.ceil(COARSE_CELL_COUNT * plan / np.max(plan)), 2.0))
 
     def pressure_distribution(self) -> PressureDistribution:
-        """Pressure distribution at the cells of the plate.
+        """Pressure distribution at the centroids of area cells of the plate.
 
         A moment M about x changes the force of bolt i by M y_i/sum(y_j^2), y from the centre of the bolts
         (the plates stay plane); for two equal rows this is M/(L_a N_b). Bolts in one row cannot carry a
@@ -179,7 +179,7 @@ def equivalent_bolt_rows(bolt_y: Array) -> tuple[float, float]:
 
 
 def plate_cells(plate: BoltedPlate) -> tuple[Array, Array]:
-    """Areas (n) [m2] and centroids (n, 2) [m] of the cells of the plate, without the holes.
+    """Areas (n) [m2] and centroids (n, 2) [m] of cells that divide the plate, without the holes.
 
     Cells within the disc of a bolt are halved in both directions until they are small compared with R.
     """
@@ -230,14 +230,14 @@ def _remove_holes(plate: BoltedPlate, centres: Array, cell_sides: Array) -> tupl
 
 
 def pressure_decay(plate: BoltedPlate, distance: Array) -> Array:
-    """Pressure of a bolt at distances (...) [m] from its axis, over that at the edge of its hole [1]."""
+    """Pressure at distances (...) [m] from a bolt's axis, over the pressure at the edge of its hole [1]."""
     a, R = 0.5 * plate.hole_diameter, plate.pressure_radius
     r = np.clip(distance, a, R)
     return np.asarray((R - r) ** 3 * (3.0 * r + R - 4.0 * a) / (R - a) ** 4)
 
 
 def bolt_pressures(plate: BoltedPlate) -> tuple[Array, Array, Array]:
-    """Shares (k) [1] and positions (k, 2) [m] of the cells, and pressures (n, k) [1] of each bolt.
+    """Area shares (k) [1] and positions (k, 2) [m] of the area cells, and pressures (n, k) [1] of each bolt.
 
     Positions are relative to the centroid of the contact, pressures to their mean over the whole contact.
     """
@@ -250,7 +250,10 @@ def bolt_pressures(plate: BoltedPlate) -> tuple[Array, Array, Array]:
 def _one_row_equivalent_distance(
     plate: BoltedPlate, area_shares: Array, cell_positions: Array, unit_pressures: Array
 ) -> float:
-    """Equivalent distance L_a [m] for bolts in one row, see `BoltedPlate.equivalent_bolt_rows`."""
+    """Equivalent distance L_a [m] of two bolt rows, for bolts that lie in one row.
+
+    See `BoltedPlate.equivalent_bolt_rows`.
+    """
     equal = unit_pressures.mean(axis=0)
     distances = cell_positions[:, 1] - area_shares @ (equal * cell_positions[:, 1])
     reach = np.max(np.abs(distances[equal > 0.0]))

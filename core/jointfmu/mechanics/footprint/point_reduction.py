@@ -150,6 +150,7 @@ def _find_symmetry_groups(distribution: PressureDistribution) -> NodeIndices:
     tilt = distribution.moment_pressure_ratio
 
     def mirrored_node_keys(x_sign: float, y_sign: float) -> Array:
+        """Rounded numbers of the nodes, mirrored by the signs; equal keys are mirror images."""
         return np.column_stack([x_sign * x, y_sign * y, share, equal, y_sign * tilt]) + 0.0  # no -0.0
 
     own_keys, group = mirrored_node_keys(1.0, 1.0), np.arange(distribution.area_share.size)

@@ -67,9 +67,13 @@ def _round_to_steps(values: Array, binary_digits: int) -> Array:
 
 
 def clear_round_off(distribution: PressureDistribution) -> PressureDistribution:
-    """Replace round-off in a pressure distribution by exact zeros, see ROUND_OFF_RATIO."""
+    """Replace numbers of a pressure distribution that are only round-off by exact zeros.
+
+    The limit is ROUND_OFF_RATIO.
+    """
 
     def clear_small_values(values: Array) -> Array:
+        """Replace small values of one array by zeros."""
         return np.where(np.abs(values) > ROUND_OFF_RATIO * np.max(np.abs(values)), values, 0.0)
 
     position = np.column_stack([clear_small_values(values) for values in distribution.position.T])

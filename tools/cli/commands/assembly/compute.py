@@ -28,9 +28,9 @@ if TYPE_CHECKING:
 
 
 MAX_MESHES = 5
-"""Largest number of meshes for `--refine`."""
+"""Largest number of meshes for `--refine` [1]."""
 MIN_REFINEMENT = 0.3
-"""Smallest refinement [1] at which the mesh still resolves a hole."""
+"""Smallest refinement factor of the mesh [1], as in `--refine`, at which it still resolves a hole."""
 
 
 def add_command(command_parsers: SubParsers) -> None:
@@ -143,6 +143,7 @@ def tightening_force(args: argparse.Namespace, parameter_file: ParameterFile) ->
 
 
 def _collect_results(solution: "JointSolution", moment: float, preload: float) -> dict[str, Any]:
+    """Results of the computed contact pressure as a JSON object."""
     field = solution.contact_field
     places, between = solution.pressure_between_bolts
     return {
@@ -162,7 +163,7 @@ def _collect_results(solution: "JointSolution", moment: float, preload: float) -
 
 
 def _format_results(result_values: dict[str, Any]) -> Iterator[str]:
-    """Format the results as lines of text."""
+    """Format the results of the computed contact pressure as lines of text."""
     yield (
         f"{result_values['assembly']}: {result_values['preload']:g} N per bolt, moment "
         f"{result_values['moment']:g} N.m"
@@ -181,6 +182,7 @@ def _format_results(result_values: dict[str, Any]) -> Iterator[str]:
 
 
 def _mesh_result_to_json(mesh_result: "MeshResult") -> dict[str, object]:
+    """JSON object of the results on one mesh of the convergence study."""
     return {
         "refinement": mesh_result.refinement,
         "elements": mesh_result.element_count,

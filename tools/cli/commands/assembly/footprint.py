@@ -36,6 +36,7 @@ OPTION_NAME_BY_ARGUMENT = {"length": "length_unit", "pressure": "pressure_unit",
 
 
 def _declare_import(subcommands: SubParsers) -> None:
+    """Declare the sub-command `import` with its options."""
     text = "import a nodal contact result into the parameter file of a joint"
     step = declare_command(subcommands, "import", _run_import, text)
     declare_argument(
@@ -84,6 +85,7 @@ def _declare_import(subcommands: SubParsers) -> None:
 
 
 def _run_import(args: argparse.Namespace) -> CommandResult:
+    """Run `jointfmu footprint import`: read a contact result, reduce it, write the parameter file."""
     if (args.moment is None) != (args.moment_file is None):
         raise ValueError("--moment and --moment-file belong together; state both or neither")
     from ....inputs.fields import joint_parameters
@@ -168,6 +170,7 @@ def _create_reader(args: argparse.Namespace) -> Any:
 def _collect_results(
     args: argparse.Namespace, parameter_file: ParameterFile, field: "ContactField", reduction: "Reduction"
 ) -> dict[str, Any]:
+    """Results of the imported pressure field as a JSON object."""
     joint = parameter_file.values
     return {
         "file": str(args.file),
@@ -191,6 +194,7 @@ def _collect_results(
 
 
 def _format_results(result_values: dict[str, Any], old_contact_area: float) -> list[str]:
+    """Format the results of the imported pressure field as lines of text."""
     from ....inputs.fields.sums import PRELOAD_RATIO_RANGE
 
     low, high = PRELOAD_RATIO_RANGE

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ....fem.modes import NaturalModes
 
 MAX_MODES = 40
-"""Largest number of modes."""
+"""Largest number of natural frequencies that the command computes [1]."""
 
 
 def add_modes_command(command_parsers: SubParsers) -> None:
@@ -70,6 +70,7 @@ def run(args: argparse.Namespace) -> CommandResult:
 
 
 def _check_arguments(args: argparse.Namespace) -> None:
+    """Raise ValueError before the work starts if an option of the command is out of range."""
     if not 1 <= args.count <= MAX_MODES:
         raise ValueError(f"--count = {args.count} is outside [1, {MAX_MODES}]: number of modes")
     if not 0.1 <= args.refinement <= 4.0:
@@ -86,6 +87,7 @@ def _modes_to_json(
     modes: "NaturalModes",
     uniform_pressure_modes: "NaturalModes",
 ) -> dict[str, object]:
+    """JSON object of the natural frequencies, also those under uniform pressure."""
     rows = zip(modes.frequency.tolist(), uniform_pressure_modes.frequency.tolist(), strict=True)
     return {
         "assembly": assembly_name,
@@ -98,6 +100,7 @@ def _modes_to_json(
 
 
 def _format_modes(modes: "NaturalModes", uniform_pressure_modes: "NaturalModes") -> Iterator[str]:
+    """Format the natural frequencies as lines of text."""
     yield "mode   f [Hz]   with uniform pressure [Hz]"
     for i, (f, g) in enumerate(zip(modes.frequency, uniform_pressure_modes.frequency, strict=True), 1):
         yield f"{i:4d} {f:8.2f} {g:15.2f}  {100.0 * (g / f - 1.0):+.2f} %"

@@ -117,6 +117,7 @@ def add_command(command_parsers: SubParsers) -> None:
 
 
 def _run_identify(args: argparse.Namespace) -> CommandResult:
+    """Run `jointfmu surface`: identify surface parameters of scans, and write them into a parameter file."""
     base = _load_start_file(args)
     _check_arguments(args)
     spacing = parse_spacing(args.spacing) if args.spacing else None
@@ -157,7 +158,7 @@ def _load_table_default(joint: str, scans: list[Path]) -> ParameterFile:
 
 
 def _needs_table(identification: "Identification", args: argparse.Namespace) -> bool:
-    """Whether the joint gets the law `table`, because --law says so, or by default."""
+    """Whether the joint gets the interface law `table`, because `--law` says so, or by default."""
     if args.params:
         return False
     is_default = args.solve or not identification.is_gaussian
@@ -167,7 +168,10 @@ def _needs_table(identification: "Identification", args: argparse.Namespace) -> 
 def _find_points(
     identification: "Identification", heights: list[Heights], args: argparse.Namespace
 ) -> InterfacePoints:
-    """Stiffness over pressure: by boundary elements with --solve, else from the tail of the heights."""
+    """Points of the interface law `table`: stiffness over pressure of the scanned surfaces.
+
+    By boundary elements with `--solve`, else from the tail of the height distribution.
+    """
     names = expand_to_sides("material", args.material)
     assert names is not None  # the option has a default
     rows = [find_row("materials", name) for name in names]
@@ -186,7 +190,7 @@ def _find_points(
 
 
 def _check_rms_heights(identification: "Identification", accept_any_height: bool) -> None:
-    """Raise an error for rms heights above those of any machined surface: most often the unit is wrong."""
+    """Raise ValueError for rms heights above those of any machined surface: most often the unit is wrong."""
     for name, scan in zip(identification.file_names, identification.scans, strict=True):
         if scan.rms_height > MAX_RMS_HEIGHT and not accept_any_height:
             raise InputRefusal(

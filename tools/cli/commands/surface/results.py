@@ -33,7 +33,7 @@ def results_to_json(
     points: InterfacePoints | None,
     args: argparse.Namespace,
 ) -> dict[str, object]:
-    """JSON object of all results, in SI units.
+    """JSON object of all results of `jointfmu surface`, in SI units.
 
     parameter_file : parameter file with the identified surface, if one is made
     """
@@ -72,7 +72,7 @@ def results_to_json(
 
 
 def _points_to_json(points: InterfacePoints) -> dict[str, object]:
-    """JSON object of stiffness over pressure."""
+    """JSON object of the points of stiffness over pressure."""
     return {
         "pressure": points.pressure.tolist(),
         "stiffness": points.stiffness.tolist(),
@@ -121,6 +121,7 @@ def _roughness_to_json(
 
 
 def _fractal_result_to_json(fractal_result: FractalResult, gamma: float) -> dict[str, object]:
+    """JSON object of D and G of one scan, with their intervals."""
     fit = fractal_result.fit
     return {
         "method": fractal_result.method,
@@ -144,6 +145,7 @@ def _fractal_result_to_json(fractal_result: FractalResult, gamma: float) -> dict
 
 
 def _interval_to_json(estimate: Estimate) -> dict[str, float | None]:
+    """JSON object of an estimate with its confidence interval."""
     return {
         "value": _finite_or_none(estimate.value),
         "low": _finite_or_none(estimate.low),
@@ -162,7 +164,7 @@ def find_combined_rms_height(identification: Identification, parameter_file: Par
 
 
 def reported_joints(args: argparse.Namespace, parameter_file: ParameterFile | None) -> list[str]:
-    """Joints to report: that of the parameter file, else all joints with a rough surface."""
+    """Joints whose surface parameters are printed: the parameter file's, else all with a rough surface."""
     return (
         [parameter_file.joint] if parameter_file else [name for name, kind in KINDS.items() if kind.surfaces]
     )
@@ -171,7 +173,7 @@ def reported_joints(args: argparse.Namespace, parameter_file: ParameterFile | No
 def collect_warnings(
     identification: Identification, parameter_file: ParameterFile | None, args: argparse.Namespace
 ) -> list[str]:
-    """Collect warnings about the identified surface and the written parameter file."""
+    """Collect warnings about an identified surface and the parameter file written for it."""
     lines = list(identification.warnings)
     if parameter_file and parameter_file.law == ROUGHNESS_LAW and not identification.is_gaussian:
         ratio = 1.0 / identification.tail_ratio
@@ -207,7 +209,7 @@ def build_result(
     points: InterfacePoints | None,
     args: argparse.Namespace,
 ) -> CommandResult:
-    """Build the result of the command: lines, table and warnings.
+    """Build the printed result of `jointfmu surface`: lines, table and warnings.
 
     parameter_file : parameter file with the identified surface, if one is made
     points         : stiffness over pressure, if it is computed
@@ -249,6 +251,7 @@ def build_result(
 
 
 def _format_scan(scan: ScanRoughness) -> str:
+    """Lines on one scan: size, spacing, repaired points, rms height."""
     q, a = ("Sq", "Sa") if scan.is_areal else ("Rq", "Ra")
     return (
         f"{q} = {1e6 * scan.rms_height:.4g} um, {a} = {1e6 * scan.mean_absolute_height:.4g} um, "
@@ -258,7 +261,7 @@ def _format_scan(scan: ScanRoughness) -> str:
 
 
 def _format_tail(identification: Identification) -> str:
-    """Text on what the shape of the heights does to the stiffness."""
+    """Text on the effect of the skewness and kurtosis of the heights on the stiffness."""
     ratio = 1.0 / identification.tail_ratio
     if identification.is_gaussian:
         return f"highest points: as of Gaussian heights, stiffness {ratio:.2f} times p/(gamma h)"
@@ -270,7 +273,7 @@ def _format_tail(identification: Identification) -> str:
 
 
 def _format_solution(points: InterfacePoints) -> list[str]:
-    """Table of the stiffness by boundary elements, with what a scan cannot know."""
+    """Table of the stiffness by boundary elements, and what a scan cannot determine."""
     heads = ("p [MPa]", "k [N/m3]", "at the hardness")
     rows = [
         (f"{p / 1e6:.3g}", f"{k:.3g}", f"{100.0 * share:.0f} %")
@@ -286,6 +289,7 @@ def _format_solution(points: InterfacePoints) -> list[str]:
 
 
 def _format_stiffness(identification: Identification, parameter_file: ParameterFile | None) -> str:
+    """Line on the stiffness per area that the rms height predicts."""
     h = find_combined_rms_height(identification, parameter_file)
     known = {name[2] for name in parameter_file.roughness} if parameter_file else set()
     if (
@@ -305,6 +309,7 @@ def _format_stiffness(identification: Identification, parameter_file: ParameterF
 def _format_fractal_parameters(
     identification: Identification, joint_name: str, args: argparse.Namespace
 ) -> str:
+    """Lines on D and G of all scans, as parameters of a joint."""
     values = fractal_parameters(identification, joint_name, args.method)
     method = next(iter(values.values()))[1].method
     why = undetermined_reason(identification, joint_name)
@@ -317,6 +322,7 @@ def _format_fractal_parameters(
 
 
 def _format_fractal_row(fractal_result: FractalResult) -> tuple[str, ...]:
+    """Row of a table with D and G of one scan."""
     profile, areal = fractal_result.profile, fractal_result.areal
     return (
         fractal_result.method,
@@ -333,6 +339,7 @@ def _format_fractal_row(fractal_result: FractalResult) -> tuple[str, ...]:
 
 
 def _format_interval(estimate: Estimate, number_format: str) -> str:
+    """Format an estimate with its confidence interval."""
     if not math.isfinite(estimate.value):
         return "not determined"
     return (

@@ -10,12 +10,13 @@ from ...command import CommandResult, SubParsers, declare_argument, declare_comm
 from ...outputs import declare_output
 
 MAX_MEMORY = 2e9
-"""Largest memory [B] for a surface and the text of its file."""
+"""Largest memory [B] for the heights of a surface and the text of its file."""
 MEMORY_PER_MAP_POINT, MEMORY_PER_PROFILE_POINT = 64.0, 190.0
 """Memory [B] for one point of a map and of a profile, with its text (measured at a million points)."""
 MAX_WAVE_DIRECTIONS = 1000
-"""Largest number of superposed directions of an isotropic surface."""
+"""Largest number of superposed directions of the waves of an isotropic surface [1]."""
 SURFACE_TYPES = ("isotropic", "textured", "profile")
+"""Types of synthetic surfaces: the names of the option `--type`."""
 
 
 def add_command(subcommands: SubParsers, subcommand_name: str) -> None:
@@ -40,6 +41,7 @@ def add_command(subcommands: SubParsers, subcommand_name: str) -> None:
 
 
 def _run_synthesize(args: argparse.Namespace) -> CommandResult:
+    """Run `jointfmu surface synthesize`: write the heights of a random surface."""
     if args.out.suffix.lower() != ".csv":
         raise ValueError(f"{args.out}: suffix {args.out.suffix!r}, allowed is .csv")
     heights = _make_heights(args)
@@ -74,6 +76,7 @@ def _check_memory(args: argparse.Namespace) -> None:
 
 
 def _make_heights(args: argparse.Namespace) -> Heights:
+    """Heights [m] of the surface that the options describe."""
     count = 2 if args.shape == "textured" else 1
     for name, values in (("D", args.D), ("G", args.G)):
         if len(values) != count:

@@ -8,6 +8,7 @@ SERIES_STIFFNESS_OPTION = Option(
     "stiffness of the structure in series with the joint [N/m]; to fit it: --free series_stiffness",
     is_number=True,
 )
+"""Option for the stiffness of a structure in series with the joint."""
 
 
 FIT_PROCEDURES = (
@@ -44,3 +45,4 @@ FIT_PROCEDURES = (
         run_fit=make_lazy_fit(f"{__name__}.loop"),
     ),
 )
+"""Fit procedures of the bolted joint."""

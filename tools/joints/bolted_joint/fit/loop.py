@@ -45,6 +45,7 @@ from .preload import (
 from .preload import FITTED_PARAMETERS as INTERFACE
 
 COLUMN_NAMES = ColumnNames("force", "displacement", unit_sizes("N", "kN"), unit_sizes("m", "mm", "um", "nm"))
+"""Columns of force and displacement in a file of loops, with their units."""
 FITTED_PARAMETERS = {law: ("mu", *names) for law, names in INTERFACE.items()}
 """{law: parameters to fit}: friction, stiffness level and, if the law has one, exponent. The exponent is not
 fitted to vibrations, in which exponent and level have nearly the same effect."""
@@ -60,7 +61,7 @@ MAX_TABLE_DISPLACEMENT_RATIO = 1.05
 PLAUSIBLE_FRICTION = (0.005, 3.0)
 """Friction coefficients [1] that are plausible for loops in gross slip."""
 _FIRST_LOADING_STEPS = 48
-"""Steps of the table of first loading, finer near rest."""
+"""Number of steps of the table of first loading [1], finer near rest."""
 _ELASTIC_FIRST_LOADING_STEPS, _GROSS_SLIP_DISPLACEMENT_RATIO = 24, 4.0
 """Elastic sides: steps of the table, and displacement of gross slip over friction_limit/K_xx [1]."""
 
@@ -105,9 +106,11 @@ def make_shear_loop_law(
     end, max_force = float(displacement[-1]), float(force[-1])
 
     def friction_force(motion: Array) -> Array:
+        """Shear force [N] in first loading at displacements [m]."""
         return np.where(motion < end, table(np.minimum(motion, end)), max_force)
 
     def friction_work(motion: Array) -> Array:
+        """Work [J] of the shear force in first loading up to displacements [m]."""
         inside = np.minimum(motion, end)
         return np.asarray(energy(inside) + max_force * (motion - inside))
 
@@ -240,17 +243,20 @@ def fit(
         )
 
     def make_joint(parameter_values: Mapping[str, float]) -> AnyBoltedJoint:
+        """Joint with values of the fitted parameters."""
         parameters: AnyBoltedJoint = file.with_values(
             _joint_parameters(parameter_values), "calibration", "fit"
         ).values
         return parameters
 
     def get_series_stiffness(parameter_values: Mapping[str, float]) -> float | None:
+        """Series stiffness [N/m]: fitted or stated; None: rigid structure."""
         return parameter_values.get(SERIES_STIFFNESS_NAME, series_stiffness)
 
     reach = MAX_TABLE_DISPLACEMENT_RATIO * data.amplitude if data.kind == "loops" else np.inf
 
     def make_law(parameter_values: Mapping[str, float]) -> HysteresisLaw:
+        """Law of the loops with values of the fitted parameters."""
         set_status_text(
             "tries " + ", ".join(f"{name} = {value:.4g}" for name, value in parameter_values.items())
         )
@@ -262,6 +268,7 @@ def fit(
     measured_rest = data.rest_stiffness(modal_mass)
 
     def total_stiffness_at_rest(parameter_values: Mapping[str, float]) -> float:
+        """Stiffness [N/m] at rest of joint and structure in series."""
         series = get_series_stiffness(parameter_values)
         return 1.0 / (
             1.0 / shear_stiffness_at_rest(make_joint(parameter_values), force)
@@ -306,6 +313,7 @@ def fit(
     is_corrected = data.kind == "loops" and file.values.has_elastic_members and is_joint_alone
 
     def subtract_masing_deviation(parameter_values: Mapping[str, float]) -> Measurement:
+        """Measured loops minus the deviation of the joint from Masing's rule."""
         assert isinstance(data.data, Loops)
         off = _masing_deviation(make_joint(parameter_values), force, data.data, make_law(parameter_values))
         return replace(data, data=replace(data.data, force=data.data.force - off))
@@ -400,5 +408,5 @@ def _exchange_stiffness_level(
 
 
 def _joint_parameters(parameter_values: Mapping[str, float]) -> dict[str, float]:
-    """Select the parameters of the joint: all values except the other unknowns."""
+    """Values of the joint's parameters: all fitted values except the unknowns outside of the joint."""
     return {name: value for name, value in parameter_values.items() if name not in UNKNOWNS_OUTSIDE_JOINT}

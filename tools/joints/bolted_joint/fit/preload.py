@@ -51,8 +51,9 @@ COLUMN_UNITS: Mapping[str, UnitSizes] = {
     "stiffness": unit_sizes("N/m", "N/um", "kN/mm", "N/mm"),
     "frequency": unit_sizes("Hz", "kHz"),
 }
+"""Columns of a file of the fit, with their units."""
 MIN_DEGREES_OF_FREEDOM = 2
-"""Points beyond the number of unknowns from which the fit estimates the noise of a point [1]."""
+"""Number of points in excess of the unknowns [1], from which the fit estimates the noise of a point."""
 ASSUMED_NOISE = 0.05
 """Relative standard deviation [1] of a point, assumed if there are too few points to estimate it."""
 FITTED_PARAMETERS: Mapping[str, tuple[str, ...]] = {
@@ -71,7 +72,7 @@ START_VALUES: Mapping[str, tuple[float, ...]] = {
 
 
 COMPLETE_JOINT_ENGINES = VariableJoint(MODELS[0])
-"""The joint with elastic sides at the parameters of a trial."""
+"""Evaluations of the joint with elastic sides, at trial values of the fitted parameters."""
 
 
 def joint_stiffness(joint: AnyBoltedJoint, preload: Array, direction: str = "normal") -> Array:
@@ -141,11 +142,13 @@ def fit(
     )
 
     def predict(parameter_values: Mapping[str, float]) -> Array:
+        """Stiffness or frequency at the measured preloads, with values of the fitted parameters."""
         own = {name: value for name, value in parameter_values.items() if name != SERIES_STIFFNESS_NAME}
         joint = replace(file, origins={}, sources={}).with_values(own, "calibration", "fit").values
         return curve.predict(joint, parameter_values.get(SERIES_STIFFNESS_NAME, series_stiffness), direction)
 
     def logarithmic_error(parameter_values: Mapping[str, float]) -> Array:
+        """Logarithm of predicted over measured values (n) [1]."""
         return np.log(predict(parameter_values) / curve.measured_values)
 
     if curve.preload_count < len(names) <= 2:
@@ -207,7 +210,10 @@ class PreloadCurve:
 
     @property
     def power(self) -> float:
-        """Exponent [1] of the preload with which the quantity grows; at least two different preloads."""
+        """Exponent [1] of the power of the preload with which the measured quantity grows.
+
+        The curve needs at least two different preloads.
+        """
         return float(np.polyfit(np.log(self.preload), np.log(self.measured_values), 1)[0])
 
     @property
@@ -297,7 +303,7 @@ def _find_start_values(
     preload_curve: PreloadCurve,
     logarithmic_error: Callable[[Mapping[str, float]], Array],
 ) -> Sequence[Unknown]:
-    """Unknowns of the fit; their start values are those of several that have the smallest error."""
+    """Unknowns of the fit, each with the start value of smallest error out of several."""
     parameters = make_unknowns(
         parameter_file, [name for name in fitted_names if name != SERIES_STIFFNESS_NAME], {}
     )
@@ -322,6 +328,7 @@ def _find_start_values(
 
 
 def _fit_facts(preload_curve: PreloadCurve, solution: Solution) -> FitFacts:
+    """Facts about the fit: largest error, noise, exponent of the preload."""
     power = {}
     if preload_curve.preload_count > 1:
         text = f"of the preload with which the {preload_curve.quantity_name} grows"

@@ -30,13 +30,14 @@ from ....exchange.modelica.records import (
 DAMPING_TOLERANCE = 1e-3
 """Largest relative error [1] of the linearly interpolated dissipation factor."""
 MAX_CONTACT_FORCE_RATIO = 10.0
-"""Total contact force at the end of the table over the one at tightening [1]."""
+"""Total contact force at the end of the table, over the contact force at tightening [1]."""
 PRELOADED_SLIDER_PAIR_COUNT, FIRST_SLIP_DISPLACEMENT_RATIO = 12, 2e-3
 """Number of slider pairs in contact at tightening, and slip displacement of the first pair over that of gross
 slip [1]. The slip displacements of the pairs form a geometric sequence."""
 FULL_CONTACT_FORCE_RATIOS = (2.0, 5.0)
-"""Normal forces over that at tightening [1] at which further slider pairs come into full contact, in
-compression."""
+"""Normal forces over that at tightening [1] at which further pairs of sliders come into full contact.
+
+They are on the compression side."""
 _FORCE_SAMPLE_COUNT, _DAMPING_SAMPLE_COUNT = 800, 200
 """Sample points on either side of the tightened state: for the force, before decimation, and for the
 damping."""
@@ -77,6 +78,7 @@ def combine_nodes(spring: BoltedJointSpring, preload: float, moment: float) -> C
     area, share = spring.joint.A_0, spring.points.area_share
 
     def total_force(approach_change: Array) -> list[Array]:
+        """Total contact force [N] at a change of the approach [m] from the tightened state."""
         approach = start + approach_change[:, None]
         approach[approach - low < ROUND_OFF_RATIO * (high - low)] = low  # nodes that just touch have no load
         nodal = spring.curve.derivatives(approach, 2)
@@ -100,6 +102,7 @@ def combine_nodes(spring: BoltedJointSpring, preload: float, moment: float) -> C
     eta = np.interp(c, coarse, _dissipation_factor(spring, start + coarse[:, None]))
 
     def is_dissipation_factor_linear(first_node: int, last_node: int) -> bool:
+        """Whether eta_n between two nodes of the table is linear within DAMPING_TOLERANCE."""
         line = np.interp(
             c[first_node : last_node + 1], c[[first_node, last_node]], eta[[first_node, last_node]]
         )
@@ -149,6 +152,7 @@ temperature [K]."""
 def _make_records(
     parameter_file: ParameterFile, working_points: Sequence[WorkingPoint]
 ) -> list[ModelicaRecord]:
+    """Modelica records of a parameter file, one for each working point."""
     spring = BoltedJointSpring.for_interface_nodes(parameter_file.values)
     return [_make_record(parameter_file.name, spring, *point) for point in working_points]
 
@@ -156,6 +160,7 @@ def _make_records(
 def _make_record(
     record_name: str, spring: BoltedJointSpring, preload: float, moment: float, temperature: float
 ) -> ModelicaRecord:
+    """Modelica record of a bolted joint at one working point."""
     tight = combine_nodes(spring, spring.preload_at_temperature(preload, temperature), moment)
     rest = spring.evaluate(preload, moment, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), temperature=temperature)
     values = format_parameter_values(
@@ -211,3 +216,4 @@ MODELICA_COMPONENT = ModelicaComponent(
         "sliders": f"{2 * (PRELOADED_SLIDER_PAIR_COUNT + len(FULL_CONTACT_FORCE_RATIOS))}",
     },
 )
+"""Modelica component of the bolted joint."""

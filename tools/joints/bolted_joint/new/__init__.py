@@ -6,6 +6,7 @@ from ....inputs.drawing.part import DrawingOptions, NewJoint, NewJointCommand
 
 
 def _make_joint(options: DrawingOptions) -> NewJoint:
+    """Make a bolted joint from the options of a drawing; loads finite elements when they are needed."""
     from . import plate
 
     return plate.make_joint(options)
@@ -121,3 +122,4 @@ NEW_JOINT_COMMAND = NewJointCommand(
     ),
     make_joint=_make_joint,
 )
+"""Drawing of a bolted joint: its options, and the function that makes the joint."""

@@ -13,7 +13,9 @@ from ....inputs.drawing.quantities import parse_value, parse_values
 from ....inputs.drawing.tables import Thread, find_thread
 
 _BOLTS_PATTERN = re.compile(r"(?:(\d+)\s*x\s*)?(M\d+)(?:\s*x\s*(\d+(?:\.\d+)?))?", re.IGNORECASE)
+"""Pattern of number and thread of bolts, as in 4xM12x1.25."""
 _GRID_PATTERN = re.compile(r"(\d+)x(\d+)")
+"""Pattern of a bolt grid, as in 2x3."""
 
 
 def parse_bolts(bolts_text: str) -> tuple[int, Thread]:
@@ -64,6 +66,7 @@ def bolt_positions(options: DrawingOptions, bolt_count: int) -> Array:
 
 
 def _parse_positions(position_texts: Sequence[str], bolt_count: int) -> Array:
+    """Parse positions X,Y of bolts in mm: (count, 2) [m]."""
     places = [parse_values("at", text, separator=",", count=2) for text in position_texts]
     if len(places) != bolt_count:
         raise ValueError(f"--at has {len(places)} places, expected {bolt_count}: one for each of --bolts")
@@ -91,7 +94,7 @@ def _grid_positions(grid_lengths: Sequence[float], bolt_count: int, grid_text: s
 
 
 def _grid_size(grid_lengths: Sequence[float], bolt_count: int, grid_text: str | None) -> tuple[int, int]:
-    """Number of bolts along x and along y."""
+    """Number of bolts of a rectangular grid along x and along y."""
     if grid_text:
         match = _GRID_PATTERN.fullmatch(grid_text)
         if not match or 0 in (sizes := (int(match[1]), int(match[2]))):

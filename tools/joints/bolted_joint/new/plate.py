@@ -38,7 +38,7 @@ MAX_HOLE_RATIO = 3.0
 UNSTATED_RZ = 10e-6
 """Maximum height Rz [m] of faces whose roughness is not stated, for embedding: the usual one of Ra 1.6 um."""
 THREAD_DEPTH_RATIO = 1.0
-"""Depth of a tapped thread over its diameter [1]: a usual value in steel."""
+"""Depth of a tapped thread over the diameter of the thread [1]: a usual value in steel."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,6 +158,7 @@ def make_joint(options: DrawingOptions) -> NewJoint:
 
 
 def _hole_diameter(options: DrawingOptions, thread: Thread) -> tuple[float, tuple[str, str]]:
+    """Diameter [m] of the clearance hole: stated, or that of the thread."""
     if options["hole"] is None:
         return thread.hole, ("standard", f"{thread_source('hole')} for {thread.name}")
     return parse_value("hole", options["hole"]), ("user", "stated on the drawing")
@@ -269,6 +270,7 @@ def _clamped_thicknesses(options: DrawingOptions) -> list[float]:
 
 
 def _plate_thicknesses(options: DrawingOptions) -> list[float]:
+    """Thicknesses [m] of both plates, as the user states them."""
     thicknesses = [parse_value("thickness", text) for text in options["thickness"]]
     if len(thicknesses) != 2:
         raise ValueError(f"--thickness has {len(thicknesses)} values, expected that of each plate")
@@ -297,6 +299,7 @@ def _add_plate(
     clamped_bolt: ClampedBolt,
     hole_diameter_source: tuple[str, str],
 ) -> None:
+    """Add the parameters of contact area and pressure cones to the sheet."""
     for name in ("length", "width", "x", "y"):
         parameter_sheet.add_drawing_value(f"plate.{name}", getattr(bolted_plate, name))
     parameter_sheet.add_parameter("plate.hole_diameter", bolted_plate.hole_diameter, *hole_diameter_source)
@@ -314,6 +317,7 @@ def _add_plate(
 def _add_bolts(
     parameter_sheet: ParameterSheet, bolted_plate: BoltedPlate, clamped_bolt: ClampedBolt, thread: Thread
 ) -> None:
+    """Add the parameters of number, rows and stiffness of the bolts to the sheet."""
     row_bolts, row_distance = bolted_plate.equivalent_bolt_rows
     rows = "from the bolt positions: two equivalent rows that carry the same moment about x"
     parameter_sheet.add_parameter("n_bolts", float(len(bolted_plate.x)), "user", "stated on the drawing")
@@ -330,7 +334,10 @@ def _add_bolts(
 
 
 def _add_thermal_parameters(parameter_sheet: ParameterSheet, clamped_bolt: ClampedBolt) -> None:
-    """Add what the effect of temperature on the preload needs, apart from the materials of the sides."""
+    """Add clamped lengths and expansion of the bolts to the sheet.
+
+    By these, the temperature changes the preload.
+    """
     steel = find_row("materials", "steel")
     alpha, text = steel.numbers["alpha"], "bolts of steel" + (" with washers" if clamped_bolt.washers else "")
     parameter_sheet.add_parameter("bolt.alpha", alpha.value, alpha.kind, f"{text}: {alpha.source}")
@@ -412,7 +419,9 @@ def _preload_range_facts(parameter_file: ParameterFile) -> dict[str, tuple[float
 def _interface_share_facts(
     interface_stiffness: float, clamped_bolt: ClampedBolt
 ) -> dict[str, tuple[float, str, str]]:
-    """Fact about a joint of which the FMU has the interface only: its share of the compliance, by VDI 2230.
+    """Share of the interface in the compliance, by VDI 2230, as a fact for the user.
+
+    It is for a joint of which the FMU has the interface only.
 
     interface_stiffness : [N/m] normal stiffness of the interface per bolt
     """

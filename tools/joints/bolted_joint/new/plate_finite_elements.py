@@ -222,7 +222,7 @@ def compute_joint_or_warning(
     attachment: str,
     normalised_pressure: PressureDistribution | None = None,
 ) -> NewJoint:
-    """Compute the complete joint: parameters with elastic sides, and facts.
+    """Compute the complete joint of a drawing by finite elements: parameters with elastic sides, and facts.
 
     normalised_pressure : as in `compute_joint_of_assembly`
 
@@ -271,7 +271,7 @@ def _stiffness_facts(compliances: Compliances, attachment: str, preload: float) 
 
 
 def _interface_share_fact(compliances: Compliances) -> JointFacts:
-    """Share of the interface in the compliance of the complete joint."""
+    """Share of the interface in the compliance of the complete joint, as a fact for the user."""
     share = compliances.compliance_shares[0]
     rest = max(part for i, part in enumerate(share) if i != 2)
     text = (
@@ -282,7 +282,7 @@ def _interface_share_fact(compliances: Compliances) -> JointFacts:
 
 
 def _load_facts(compliances: Compliances, remaining_preload: float, attachment: str) -> JointFacts:
-    """Effect of an external force along z without bending: load factor, bolt share, opening load."""
+    """Facts on an external force along z without bending: load factor, bolt share, opening load."""
     where = f"force along z at {ATTACHMENTS[attachment]}"
     opens = compliances.opening_load(remaining_preload)
     free = f"{where}, other motions free"

@@ -14,7 +14,7 @@ from ....inputs.drawing.tables import (
 )
 
 DEFAULT_CLASS = "8.8"
-"""Property class for the default preload."""
+"""Property class of bolts for the default preload, if none is stated."""
 DEFAULT_METHOD = "torque-wrench"
 """Method of tightening if only a torque is stated."""
 
@@ -41,7 +41,7 @@ class AssemblyPreload:
 
     @property
     def has_range(self) -> bool:
-        """Whether the force has a range."""
+        """Whether a range of the assembly preload is known."""
         return self.high > self.low
 
     def add_to(self, parameter_sheet: ParameterSheet) -> None:
@@ -51,7 +51,7 @@ class AssemblyPreload:
             parameter_sheet.set_parameter_range("inputs.preload", self.low, self.high)
 
     def facts(self) -> dict[str, tuple[float, str, str]]:
-        """Range of the preload and utilisation of the yield strength, as far as they are known."""
+        """Facts for the user: range of the preload and utilisation of the yield strength, as far as known."""
         facts = {}
         if self.has_range:
             facts["preload_low"] = (self.low, "N", "lower end of the range of the preload")
@@ -124,6 +124,7 @@ def _preload_from_torque(
     diameter = vdi2230.head_friction_diameter(bearing_diameter, hole_diameter)
 
     def force(moment: float, mu_G: float, mu_K: float) -> float:
+        """Preload [N] of a bolt at a torque [N.m] and coefficients of friction [1]."""
         d_2 = vdi2230.pitch_diameter(thread)
         return moment / vdi2230.torque_per_preload(thread.pitch, d_2, diameter, mu_G, mu_K)
 
@@ -164,7 +165,10 @@ def _friction_text(options: DrawingOptions, friction: dict[str, StatedNumber]) -
 
 
 def _scatter(preload: AssemblyPreload, method: TighteningMethod) -> AssemblyPreload:
-    """Preload with the scatter of a method of tightening: of the greatest alpha_A that Table A8 gives."""
+    """Assembly preload with the scatter of a method of tightening.
+
+    The scatter is that of the greatest alpha_A in Table A8 of VDI 2230.
+    """
     least, greatest = method.factor
     scatter = vdi2230.preload_scatter(greatest)
     return AssemblyPreload(
@@ -180,7 +184,7 @@ def _scatter(preload: AssemblyPreload, method: TighteningMethod) -> AssemblyPrel
 def _check_strength(
     options: DrawingOptions, preload: AssemblyPreload, thread: Thread, thread_friction: float
 ) -> AssemblyPreload:
-    """Preload with its utilisation of the yield strength, and a warning if this is too high.
+    """Assembly preload with its utilisation of the yield strength, and a warning if this is too high.
 
     A preload above the proof load is warned of by `common.pressure`.
 

@@ -20,6 +20,7 @@ from ....exchange.modelica.records import (
 def _make_records(
     parameter_file: ParameterFile, working_points: Sequence[WorkingPoint]
 ) -> list[ModelicaRecord]:
+    """Modelica records of a parameter file; the gear contact has one."""
     contact = GearContactSpring.tabulate(parameter_file.values)
     pressure = decimate_curve(contact.curve)
     approach = pressure.rows[:, :1] - contact.curve.displacement[0]
@@ -35,3 +36,4 @@ MODELICA_COMPONENT = ModelicaComponent(
     make_records=_make_records,
     make_template_texts=lambda contact: {"end": f"{contact.max_load / 1e3:g} kN"},
 )
+"""Modelica component of the gear contact."""

@@ -22,6 +22,7 @@ from ....exchange.modelica.records import (
 def _make_records(
     parameter_file: ParameterFile, working_points: Sequence[WorkingPoint]
 ) -> list[ModelicaRecord]:
+    """Modelica records of a parameter file; the gear mesh has one."""
     spring = GearMeshSpring.tabulate(parameter_file.values)
     table = decimate_curve(spring.curve)
     energy = make_curve_of_table(table).energy(table.rows[:, 0])
@@ -40,6 +41,7 @@ def _make_records(
 
 
 def _wheel_parameters(mesh_parameters: MeshParameters) -> dict[str, float]:
+    """Parameters of the Modelica component that describe the wheels."""
     names = ("r_b1", "r_b2", "teeth1", "backlash", "contact_ratio", "engagement", "d", "overlap_ratio")
     return {name: getattr(mesh_parameters, name) for name in names}
 
@@ -50,3 +52,4 @@ MODELICA_COMPONENT = ModelicaComponent(
     make_records=_make_records,
     make_template_texts=lambda mesh: {"end": f"{mesh.max_load / 1e3:g} kN"},
 )
+"""Modelica component of the gear mesh."""

@@ -106,3 +106,4 @@ FIT_PROCEDURES = (
         run_fit=make_lazy_fit(f"{__name__}.catalogue"),
     ),
 )
+"""Fit procedures of the harmonic drive."""

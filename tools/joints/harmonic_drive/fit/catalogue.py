@@ -41,7 +41,7 @@ the fitted angles are within MAX_ANGLE_ERROR."""
 OTHER_ANGLE_STANDARD_DEVIATION = 0.2
 """Relative standard deviation [1] of the angle at other torques: real drives have no corners."""
 MAX_TORQUE_RATIO = 4.0
-"""max_torque over rated torque [1], about the repeated peak torque of catalogue drives."""
+"""Largest torque of the table (max_torque) over rated torque [1]: about the peak torque of catalogues."""
 
 
 def fit(
@@ -198,6 +198,7 @@ def _fit_with_increasing_weight(
 
 
 CONTACT_PAIR_LAW_TEXT = "law of the contact pair"
+"""Name of the law of the contact pair in plots."""
 
 
 def make_drive_with_catalogue_law(
@@ -279,7 +280,7 @@ def _fit_contact_pair_law_or_note(
 def _angle_errors(
     catalogue_row: CatalogueRow, fitted_drive: DriveParameters, extra_torques: Mapping[str, float]
 ) -> FitFacts:
-    """Relative errors of the angle of a law at T1, T2, the rated torque, and extra torques [N.m]."""
+    """Relative errors of the wind-up by a fitted law at T1, T2, the rated torque, and extra torques [N.m]."""
     facts = {}
     for name, T in {
         "T1": catalogue_row.T1,
@@ -293,6 +294,7 @@ def _angle_errors(
 
 
 def _max_torque_fact(catalogue_row: CatalogueRow, max_torque: float) -> FitFacts:
+    """Fact about the end of the fitted law: max_torque."""
     text = f"{MAX_TORQUE_RATIO:g} times the rated torque {catalogue_row.rated:g} N.m"
     return {"max_torque": (max_torque, "N.m", text)}
 

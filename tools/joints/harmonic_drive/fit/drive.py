@@ -29,7 +29,7 @@ STIFFNESS_PARAMETERS: Mapping[str, tuple[str, ...]] = {
 }
 """{law: parameters}; one factor on all of these scales K_WTS (Hu 2023, Eq. 46)."""
 MIN_PRESSURE_RATIO = 0.05
-"""Lower bound of the peak pressure at zero torque over that at rated torque [1] in a fit."""
+"""Lower bound in a fit of the peak pressure at zero torque, over that at rated torque [1]."""
 
 
 WIND_UP_RANGE = (1e-5, 0.1)
@@ -42,7 +42,9 @@ COLUMN_UNITS: Mapping[str, UnitSizes] = {
 }
 """{column: {unit: size in SI}} of measured torque and wind-up."""
 COLUMN_NAMES = ColumnNames("torque", "angle", *COLUMN_UNITS.values())
+"""Columns of torque and angle in a measured file, with their units."""
 RAD_PER_ARCMIN = COLUMN_UNITS["angle"]["arcmin"]
+"""Size of an arc minute [rad]."""
 
 
 def wind_up(drive: DriveParameters, torque: Array) -> Array:
@@ -53,7 +55,7 @@ def wind_up(drive: DriveParameters, torque: Array) -> Array:
 def resize_drive(
     start_file: ParameterFile, rated_torque: float, max_torque_ratio: float, origin: str, source: str
 ) -> ParameterFile:
-    """Change the rated torque [N.m]; torque_smoothing changes in proportion.
+    """Change the rated torque [N.m] of a drive; torque_smoothing changes in proportion.
 
     max_torque_ratio : new max_torque over the new rated torque [1]
     origin, source   : origin and source of the new rated torque, for the parameter file
@@ -216,7 +218,7 @@ class CatalogueRow:
 
 
 _CURVE_POINTS = 400
-"""Number of points of a plotted curve."""
+"""Number of points of a plotted curve [1]."""
 
 
 def stiffness(drive: DriveParameters, torque: Array) -> Array:
@@ -231,7 +233,7 @@ def angle_picture(
     other_drives: Mapping[str, DriveParameters],
     torque: Array,
 ) -> FitPlot:
-    """Plot of the wind-up at torques (n) [N.m]: catalogue, fitted law, and errors of the law.
+    """Plot of the wind-up of a drive at torques (n) [N.m]: catalogue, fitted law, and errors of the law.
 
     other_drives : {name: further law to plot}
     """
@@ -255,7 +257,9 @@ def stiffness_picture(
     other_drives: Mapping[str, DriveParameters],
     max_torque: float,
 ) -> FitPlot:
-    """Plot of the stiffness up to `max_torque` [N.m], without the corners: catalogue, fitted law, and errors.
+    """Plot of the stiffness of a drive up to `max_torque` [N.m], without the corners of the catalogue lines.
+
+    It shows catalogue, fitted law, and errors.
 
     other_drives : {name: further law to plot}
     """

@@ -47,7 +47,7 @@ DEFAULT_START_VALUES = {HYSTERESIS_LOSS_NAME: RAD_PER_ARCMIN, HYSTERESIS_STIFFNE
 LOSS_START_VALUES = tuple(RAD_PER_ARCMIN * np.geomspace(0.03, 10.0, 7))
 """Further start values of the hysteresis loss [rad]."""
 STIFFNESS_START_RATIOS = (0.3, 1.0, 3.0, 10.0)
-"""Further start values of the hysteresis stiffness over K_WTS at zero torque [1]."""
+"""Start values of the hysteresis stiffness over K_WTS at zero torque [1], besides that of the file."""
 
 
 def make_law(drive: DriveParameters) -> HysteresisLaw:
@@ -60,13 +60,16 @@ def make_law(drive: DriveParameters) -> HysteresisLaw:
     curve = spring.curve
 
     def friction_torque(motion: Array) -> Array:
+        """Friction torque [N.m] in first loading at wind-ups [rad]."""
         return np.asarray(np.sum(np.minimum(stiffness * motion[..., None], limit), axis=-1))
 
     def friction_work(motion: Array) -> Array:
+        """Work [J] of the friction torque in first loading up to wind-ups [rad]."""
         stuck = np.minimum(motion[..., None], limit / stiffness)
         return np.asarray(np.sum(0.5 * stiffness * stuck**2 + limit * (motion[..., None] - stuck), axis=-1))
 
     def elastic_force(motion: Array) -> Array:
+        """Torque [N.m] of the midline at wind-ups [rad] of either sign."""
         return np.copysign(curve.derivatives(np.abs(motion), 0)[0], motion)
 
     return HysteresisLaw(
@@ -104,6 +107,7 @@ def fit(
     file, rest = _set_start_hysteresis(start_file, names)
 
     def make_law_with_values(parameter_values: Mapping[str, float]) -> HysteresisLaw:
+        """Law of the loops with values of the fitted parameters."""
         return make_law(file.with_values(parameter_values, "calibration", "fit").values)
 
     model = hysteresis_fit.build_model(data, make_law_with_values, "inertia", inertia, 0.0)
@@ -156,7 +160,7 @@ ROTOR_INERTIA_NAME = "motor_inertia"
 DEFAULT_HYSTERESIS_LOSS = 0.3 * RAD_PER_ARCMIN
 """Start value of hysteresis_loss [rad] if the file has no hysteresis."""
 LOWER_BOUND_RATIO = 1e-2
-"""Lower bound of hysteresis loss and rotor inertia over a start value [1]."""
+"""Lower bound of hysteresis loss and of rotor inertia, over their start values [1]."""
 IGNORED_FIRST_SAMPLES = 10
 """Number of first samples that are ignored, because the history of the hysteresis is unknown there."""
 
@@ -241,7 +245,9 @@ def _fit_wind_ups(
     torque_changes: Array,
     extra_unknowns: Sequence[Unknown] = (),
 ) -> tuple[Solution, Array]:
-    """Fit stiffness and hysteresis to wind-ups (n) [rad]; return solution and wind-up (n) [rad] of the law.
+    """Fit stiffness and hysteresis of a drive to wind-ups (n) [rad].
+
+    Returns the solution and the wind-up (n) [rad] of the law.
 
     torque         : {name: value} -> torque (n) [N.m]
     torque_changes : as in `fit_robot_log`

@@ -130,7 +130,7 @@ def fit(
 
 
 def _sensor_notes(samples: Samples) -> list[str]:
-    """Notes about measured columns that the fit does not use."""
+    """Notes about columns of a log that the fit does not use."""
     if samples.has_sensor:
         if np.any(np.isfinite(samples.gravity_torque)):
             return ["gravity is not used: link_torque is the measured load"]
@@ -426,7 +426,10 @@ def _catalogue_drive(drive_name: str, ratio: float | None) -> ParameterFile:
 
 
 def _check_speeds(file_label: str, samples: Samples) -> None:
-    """Raise ValueError if the largest joint speed is below MIN_SPEED_RATIO times the smallest speed."""
+    """Raise ValueError if the speeds of a log are too similar to separate the parts of the friction.
+
+    The largest joint speed must be at least MIN_SPEED_RATIO times the smallest one.
+    """
     speed = np.abs(samples.dq)
     speed = speed[speed > 0.0]
     if speed.size == 0:
@@ -442,7 +445,7 @@ def _check_speeds(file_label: str, samples: Samples) -> None:
 
 
 def _confidence_intervals(solution: Solution) -> dict[str, tuple[float, float]]:
-    """Confidence intervals {name: (low, high)} by Student's t over the logarithm.
+    """Confidence intervals {parameter: (low, high)} of a fit, by Student's t over the logarithm.
 
     Parameters that the data do not determine have none.
     """
@@ -511,6 +514,7 @@ _LOAD_UNITS = {
     "gravity_sin": "N.m",
     "arm_inertia": "kg.m2",
 }
+"""Units of the unknowns of the load: {name: unit}."""
 _LOAD_TEXTS = {
     "inertia": "of arm and rotor at the joint",
     "offset": "of the motor's torque",
@@ -518,7 +522,7 @@ _LOAD_TEXTS = {
     "gravity_sin": "sin(q) part of gravity at the joint",
     "arm_inertia": "of the arm, from link_torque",
 }
-"""Units and meanings of the unknowns of the load."""
+"""Meanings of the unknowns of the load: {name: text}."""
 
 
 def load_facts(samples: Samples) -> FitFacts:
@@ -572,10 +576,12 @@ def _constant_friction_torque(earlier_samples: Samples, later_samples: Samples, 
 
 
 def _root_mean_square(values: Array) -> float:
+    """Root mean square of values."""
     return float(np.sqrt(np.mean(values**2)))
 
 
 MILLI_PER_UNIT = 1e3
+"""Factor from SI to milli-units in pictures [1]."""
 _FRICTION_LABEL, _ERROR_LABEL = "friction at the motor [mN m]", "log - law [mN m]"
 _NO_LOAD_LABEL, _TEMPERATURE_LABEL = "friction without load [mN m]", "temperature [degrees C]"
 

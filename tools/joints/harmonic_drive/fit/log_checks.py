@@ -124,5 +124,5 @@ def doubt_about_gravity(samples: Samples) -> str | None:
 
 
 def _residual(design_matrix: Array, values: Array) -> Array:
-    """Residual (n) of a linear least-squares fit."""
+    """Residual (n) of a linear least-squares fit of values to a design matrix."""
     return np.asarray(values - design_matrix @ np.linalg.lstsq(design_matrix, values)[0])

@@ -42,7 +42,7 @@ class LinearTorqueTerms:
 
     @classmethod
     def evaluate_at_samples(cls, samples: Samples, ratio: float) -> "LinearTorqueTerms":
-        """Evaluate the linear terms at samples of logs, for a speed ratio > 0."""
+        """Evaluate the linear terms of the motor torque at samples of logs, for a speed ratio > 0."""
         columns: dict[str, Array] = {}
         dynamic = samples.is_of_dynamic_log.astype(float)
         measured_load = samples.sensor_torque if samples.has_sensor else samples.gravity_torque
@@ -62,7 +62,7 @@ class LinearTorqueTerms:
         return cls(matrix, known, tuple(columns))
 
     def solve_unknowns(self, torque: Array) -> Array:
-        """Solve for the unknowns (k) by linear least squares, from the torque (n) [N.m] without friction."""
+        """Solve for the linear unknowns (k) by least squares, from the torque (n) [N.m] without friction."""
         return (
             np.asarray(np.linalg.lstsq(self.design_matrix, torque)[0]) if self.unknown_names else np.zeros(0)
         )
@@ -106,11 +106,15 @@ def filtered_motor_friction(drive: DriveParameters, samples: Samples, load: Arra
 
 
 DRY_FRICTION_NAME = "friction_coulomb"
+"""Parameter of the dry friction."""
 STRIBECK_FRICTION_NAME = "friction_stribeck"
+"""Parameter of the Stribeck friction."""
 VISCOUS_FRICTION_NAME = "friction_viscous"
+"""Parameter of the viscous friction."""
 LOAD_LOSS_NAME, BACK_DRIVING_LOSS_NAME = "load_loss", "load_loss_back"
 """Names of the parameters: loss [1] of the transmitted torque if the motor drives, and if the load drives."""
 TEMPERATURE_COEFFICIENT_NAMES = ("viscous_temperature_coefficient", "dry_temperature_coefficient")
+"""Parameters of the change of friction with temperature."""
 FITTED_PARAMETERS = (
     DRY_FRICTION_NAME,
     STRIBECK_FRICTION_NAME,
@@ -131,7 +135,7 @@ samples."""
 MIN_TEMPERATURE_RANGE = 5.0
 """Range of temperatures [K] that a log needs for a fit of the temperature coefficients."""
 MIN_LOAD_RATIO = 0.02
-"""Largest load over rated torque [1] that a log needs for a fit of the load-dependent losses."""
+"""Largest load of a log over the rated torque [1], from which load-dependent losses are fitted."""
 START_VALUES = {
     LOAD_LOSS_NAME: 0.05,
     BACK_DRIVING_LOSS_NAME: 0.05,
@@ -140,7 +144,7 @@ START_VALUES = {
 }
 """Start values if the file has 0: losses [1], temperature coefficients [1/K]."""
 LOWER_BOUND_RATIO = 1e-3
-"""Lower bound of a parameter over its start value [1]."""
+"""Lower bound of a fitted parameter over its start value [1]."""
 UNDETERMINED_DEVIATION_FACTOR, MAX_RESIDUAL_INCREASE = 2.0, 2.0
 """Standard deviation of a parameter, as a factor [1], above which it may be undetermined; and increase of the
 residual, in standard deviations for each such parameter [1], up to which the values of the file fit as
@@ -262,7 +266,9 @@ def select_parameters(
 
 
 def _fit_linear_model(samples: Samples, drive: DriveParameters) -> tuple[LinearTorqueTerms, Array]:
-    """Estimate all terms by one linear fit, with constant dry friction and viscous friction.
+    """Estimate all terms of the motor torque by one linear fit.
+
+    Dry friction is constant, viscous friction proportional to the speed.
 
     Returns the linear terms, and an array: dry friction [N.m], viscous coefficient [N.m.s/rad], and the
     unknowns of the linear terms.
@@ -360,7 +366,7 @@ def refit_without_undetermined(
     fitted_log: FittedLogFriction,
     fitted_names: Sequence[str],
 ) -> tuple[FittedLogFriction, list[str], list[str]]:
-    """Repeat the fit without the parameters that the log does not determine.
+    """Repeat the fit of the friction without the parameters that the log does not determine.
 
     A parameter of START_VALUES is dropped if its standard deviation exceeds a factor of
     UNDETERMINED_DEVIATION_FACTOR and its value in the file fits as well. Returns the fit, names of the fitted
@@ -383,7 +389,7 @@ def refit_without_undetermined(
 
 
 def accept_vanishing(fitted_log: FittedLogFriction) -> tuple[FittedLogFriction, list[str]]:
-    """Accept friction that vanishes: VANISHING_PARAMETERS on their lower bound, which stands for 0.
+    """Accept that friction parameters vanish: VANISHING_PARAMETERS on their lower bound, which stands for 0.
 
     Returns the fit, with these parameters no longer on a bound, and notes about them.
     """
@@ -395,7 +401,7 @@ def accept_vanishing(fitted_log: FittedLogFriction) -> tuple[FittedLogFriction, 
 
 
 def has_friction(samples: Samples, drive: DriveParameters) -> bool:
-    """Whether the torque has a friction part, that is more than chance and MIN_FRICTION_SHARE."""
+    """Whether the motor torque in samples has a friction part, above chance and MIN_FRICTION_SHARE."""
     ratio = abs(drive.ratio)
     terms, linear = _fit_linear_model(samples, drive)
     sense, speed = np.sign(samples.dq), ratio * samples.dq

@@ -31,7 +31,7 @@ window."""
 DEVELOPED_FRICTION_ROTATION_RATIO = 5.0
 """Rotation of the motor since a reversal over `presliding` [1] after which friction is developed to 99 %."""
 MIN_SPEED_RANGE_RATIO = 1.2
-"""Ratio of largest to smallest speed [1] that a log must exceed."""
+"""Largest speed over smallest speed [1] that a log must exceed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,12 +78,12 @@ class Samples:
         return bool(np.all(np.isfinite(self.sensor_torque)))
 
     def select_samples(self, sample_selection: NDArray[np.bool_] | SampleIndices) -> "Samples":
-        """Select samples, by a mask or by indices."""
+        """Samples of the logs that a mask or indices select."""
         return Samples(*(getattr(self, field.name)[sample_selection] for field in fields(self)))
 
 
 def join_samples(samples_of_logs: Sequence[Samples]) -> Samples:
-    """Join the samples of several logs."""
+    """Join the samples of several logs into one object."""
     return Samples(*(np.concatenate([getattr(p, f.name) for p in samples_of_logs]) for f in fields(Samples)))
 
 
@@ -111,12 +111,12 @@ def make_steady_speed_samples(columns_by_name: Mapping[str, Array], torque: Arra
 
 
 def window_size(time_step: float) -> int:
-    """Number of samples in the window of the filter, at a time step [s]; odd."""
+    """Number of samples in the window of the filter of a log, at a time step [s]; odd."""
     return max(2 * round(0.5 * FILTER_WINDOW / time_step) + 1, FILTER_NODE_COUNT)
 
 
 def filter_values(values: Array, time_step: float, derivative_order: int = 0) -> Array:
-    """Filter values (n) at a constant time step [s]; or their derivative of the order `derivative_order`."""
+    """Filter a column (n) of a log at a constant time step [s], or its derivative of an order."""
     return np.asarray(
         savgol_filter(values, window_size(time_step), FILTER_DEGREE, derivative_order, time_step)
     )
@@ -129,6 +129,7 @@ def make_dynamic_samples(
     none = np.full(time.size, np.nan)
 
     def filter_column(column_name: str) -> Array:
+        """Filter a column of the log, or its derivative; NaN if the log does not have it."""
         return (
             filter_values(columns_by_name[column_name], time_step) if column_name in columns_by_name else none
         )
@@ -241,7 +242,7 @@ TIME_STEP_TOLERANCE, TIME_GAP_RATIO = 0.2, 10.0
 """Deviation of a time step from the median, over the median [1], up to which the sampling counts as even; and
 time step over the median [1] that counts as a gap."""
 SPEED_OVER_DERIVATIVE_RANGE = (0.5, 2.0)
-"""Allowed range of dq over the derivative of q [1]."""
+"""Smallest and largest ratio of the column dq and the derivative of q [1]; outside, a unit is wrong."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -258,7 +259,7 @@ class MeasuredLog:
 
 
 def read_table(path: Path, renamed_columns: Mapping[str, tuple[str, str | None]]) -> columns.Columns:
-    """Read the columns of a log.
+    """Read the columns of a robot's log from a file.
 
     renamed_columns : {column: (heading, unit or None)} for other headings
 
@@ -270,7 +271,7 @@ def read_table(path: Path, renamed_columns: Mapping[str, tuple[str, str | None]]
 def make_log(
     table: columns.Columns, torque_constant: float | None, drive: DriveParameters, torque_at: str = "motor"
 ) -> MeasuredLog:
-    """Make the samples of a log from its columns.
+    """Make the samples of a robot's log from its columns.
 
     torque_constant : motor torque over motor current [N.m/A]
     drive           : drive, for plausibility checks of speed and torque

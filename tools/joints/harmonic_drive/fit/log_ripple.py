@@ -25,12 +25,12 @@ below the first and above the second."""
 MAX_NODE_ROTATION = 1.5
 """Largest phase [rad] of a harmonic between two nodes of the filter; above, the filter removes the ripple."""
 MIN_TURN_ANGLES = 8
-"""Number of different motor angles, modulo a turn, that show a ripple."""
+"""Number of different motor angles, modulo a turn, from which a log shows a ripple [1]."""
 
 
 @dataclass(frozen=True, slots=True)
 class Ripple:
-    """One harmonic of the dry friction: amplitude [N.m], phase [rad] and their standard deviations."""
+    """Harmonic of the dry friction in the motor angle: amplitude [N.m], phase [rad], deviations."""
 
     harmonic: int
     amplitude: float
@@ -83,7 +83,7 @@ def _harmonic_terms(samples: Samples, harmonic: int, ratio: float) -> Array:
 
 
 def fitted_ripples(fitted_log: FittedLogFriction, harmonics: Sequence[int]) -> list[Ripple]:
-    """Ripples of a fit with ripple terms, which are its last linear unknowns."""
+    """Ripples of the friction from a fit with ripple terms, which are its last linear unknowns."""
     ripples, first = [], fitted_log.linear_unknowns.size - 2 * len(harmonics)
     for number, harmonic in enumerate(harmonics):
         place = slice(first + 2 * number, first + 2 * number + 2)

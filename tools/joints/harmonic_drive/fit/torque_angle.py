@@ -40,7 +40,7 @@ MAX_CREATED_ENERGY_RATIO = 0.01
 
 @dataclass(frozen=True, slots=True)
 class MeasuredCurve:
-    """Measured curve: file, midline (curve without hysteresis), start parameters for its rated torque."""
+    """Measured torque-angle curve: file, midline (curve without hysteresis), scaled start parameters."""
 
     path: Path
     midline: backbone.Backbone
@@ -88,9 +88,11 @@ def fit(
     size = float(np.ptp(line.angle))
 
     def mean_angle_offset(predicted_angle: Array) -> float:
+        """Offset of the angle [rad] that makes the mean error zero."""
         return float(np.average(line.angle - predicted_angle, weights=line.sample_counts))
 
     def weighted_residuals(predicted_angle: Array) -> Array:
+        """Residuals of the angle, weighted by the number of averaged samples."""
         return np.asarray(weight * (line.angle - predicted_angle - mean_angle_offset(predicted_angle)) / size)
 
     angles = make_predictor(file, lambda joint: drive.wind_up(joint, line.torque))
@@ -282,7 +284,9 @@ def fit_table(
 
 
 def table_points(midline: backbone.Backbone) -> tuple[Array, Array, float]:
-    """Torques (n) [N.m] and angles (n) [rad] of a table, and the offset [rad]: the angle at zero torque.
+    """Torques (n) [N.m] and angles (n) [rad] of a measured midline, and the angle at zero torque [rad].
+
+    The points are those of the law `table`.
 
     Raises ValueError if the midline does not include zero torque or does not rise.
     """

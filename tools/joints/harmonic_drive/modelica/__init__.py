@@ -40,6 +40,7 @@ _COMPONENT_PARAMETERS = tuple(
 def _make_records(
     parameter_file: ParameterFile, working_points: Sequence[WorkingPoint]
 ) -> list[ModelicaRecord]:
+    """Modelica records of a parameter file; a drive has one."""
     drive = parameter_file.values
     spring = HarmonicDriveSpring.tabulate(drive)
     stated = format_parameter_values({name: getattr(drive, name) for name in _COMPONENT_PARAMETERS})
@@ -88,3 +89,4 @@ MODELICA_COMPONENT = ModelicaComponent(
     "HarmonicDriveSpring</a>: an acausal component is its own inverse. With <code>d</code> = 0 and no "
     "inertia set <code>use_damping=false</code>.",
 )
+"""Modelica component of the harmonic drive."""
