@@ -20,8 +20,8 @@ def find_similar_names(name: str, known_names: Iterable[str], count: int = 3) ->
     compared = r"[\W_]" if joined else "[^a-z]"
 
     def distance(known: str) -> tuple[float, ...]:
-        texts = (re.sub(compared, "", text) for text in (known.lower(), wanted))
-        similarity = SequenceMatcher(None, *texts).ratio()
+        known_text, wanted_text = (re.sub(compared, "", text) for text in (known.lower(), wanted))
+        similarity = SequenceMatcher(None, known_text, wanted_text).ratio()
         numbers = ([float(n) for n in re.findall(r"[1-9]\d*", text)] for text in (known, wanted))
         ratios = () if joined else [abs(math.log(a / b)) for a, b in zip(*numbers, strict=False)]
         return -similarity, *ratios
