@@ -80,7 +80,8 @@ def held(spec, payload):
     data = mujoco.MjData(model)
     for name, angle in (("joint2", 0.7), ("joint3", 0.8)):
         data.joint(name).qpos[0] = angle
-        data.joint(f"{name}_motor").qpos[0] = -100.0 * angle
+        if spec.joint(f"{name}_motor"):
+            data.joint(f"{name}_motor").qpos[0] = -100.0 * angle
     return model, data
 
 
@@ -458,3 +459,39 @@ def test_an_overload_in_another_pose_is_said(tmp_path, capsys, few_poses):
     assert any(
         re.match(r"joint3: in another pose of the grid \d+ N.m is beyond the max_torque", n) for n in notes
     )
+
+
+def test_ringing_after_a_stop_is_that_of_mujoco(six):
+    """MuJoCo with springs of the same stiffness and held motors, released from the wind-up of braking."""
+    said, _ = six
+    spec = elastic.read_robot(ROBOT)
+    axes = elastic.make_axes(
+        spec, {f"joint{i}": make_transmission(drive(size).file) for i, size in enumerate(SIZES, 1)}
+    )
+    model = spec.compile()
+    pose, tip = elastic.joint_positions(model, {"joint2": "0.7", "joint3": "0.8"}), model.body("flange").id
+    time = np.arange(0.0, 1.0, 2e-4)
+    found = poses.compute_ringing(model, axes, pose, 3.0, tip, time)[1]
+    assert said["ringing"]["joint2"] == {
+        "amplitude": pytest.approx(found.distance[0]),
+        "last_amplitude": pytest.approx(found.last_amplitude),
+    }
+    load, _ = poses.compute_torques(model, axes, pose, 3.0, tip)
+    inertia = poses.compute_link_inertia(model, axes, pose, 3.0, tip)
+    stiffness = [axis.stiffness(t) for axis, t in zip(axes, load.tolist(), strict=True)]
+    for k, (joint, axis) in enumerate(zip(spec.joints, axes, strict=True)):
+        joint.armature, joint.stiffness = 0.0, [stiffness[k], 0.0, 0.0]
+        joint.damping = [axis.drive.damping, 0.0, 0.0]
+        joint.springref = float(pose[k] - load[k] / stiffness[k])  # at rest in the pose
+    model, data = held(spec, 3.0)
+    model.opt.integrator, model.opt.timestep = mujoco.mjtIntegrator.mjINT_RK4, 2e-4
+    data.qpos[:] = pose
+    mujoco.mj_forward(model, data)
+    rest = data.body("flange").xpos.copy()
+    data.qpos += inertia[:, 1] * axes[1].drive.rated_torque / inertia[1, 1] / stiffness
+    distance = []
+    for _ in range(1000):
+        mujoco.mj_forward(model, data)
+        distance.append(np.linalg.norm(data.body("flange").xpos - rest))
+        mujoco.mj_step(model, data)
+    assert distance == pytest.approx(found.distance[:1000], abs=0.01 * found.distance[0])

@@ -26,6 +26,7 @@ from jointfmu.progress import map_jobs
 from jointfmu.quantity.refusal import InputRefusal
 from jointfmu.version import __version__
 
+from .arm import UNCOUPLED_NOTE
 from .system import Component, System, load_systems
 from .wiring import find_lag_parameters, find_model, find_signals
 
@@ -80,6 +81,8 @@ def format_structure(
     head = {**spaces, "version": version, "name": system.name, **file_attributes()}
     root = Element("ssd:SystemStructureDescription", head)
     description = f"{system.description}. {master.force_lag_reason}"
+    if system.arm:
+        description += f" {UNCOUPLED_NOTE}"
     root.set("description", description)
     system_node = SubElement(root, "ssd:System", name=system.name, description=description)
     _add_parameter_binding(system_node, system.name)

@@ -36,7 +36,8 @@ SliderResultant hysteresis_advance(const Hysteresis *hysteresis, const double *h
 {
     const Sliders1D sliders = hysteresis_sliders(hysteresis, history);
     SliderResultant sum;
-    sliders_advance_1d(HYSTERESIS_SLIDERS, &sliders, phi - history[HISTORY_WIND_UP], history_end + HISTORY_FORCE, &sum);
+    sliders_advance_1d(hysteresis->use_avx, HYSTERESIS_SLIDERS, &sliders, phi - history[HISTORY_WIND_UP],
+                       history_end + HISTORY_FORCE, &sum);
     return sum;
 }
 
@@ -183,7 +184,8 @@ SliderResultant friction_advance(const Friction *friction, const double *history
     const Sliders1D sliders = {friction->K, friction->compliance, limit_start, limit_end,
                                history + HISTORY_FRICTION_TORQUE};
     SliderResultant sum;
-    sliders_advance_1d(FRICTION_SLIDERS, &sliders, increment, history_end + HISTORY_FRICTION_TORQUE, &sum);
+    sliders_advance_1d(friction->use_avx, FRICTION_SLIDERS, &sliders, increment, history_end + HISTORY_FRICTION_TORQUE,
+                       &sum);
     history_end[HISTORY_ANGLE] = arguments.angle;
     history_end[HISTORY_LIMIT] = arguments.limit[0];
     history_end[HISTORY_LIMIT + 1] = arguments.limit[1];

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "data.h"
+#include "simd.h"
 #include "tabulated_joint.h"
 
 #if defined MIDLINE_NODES || defined MIDLINE_IS_DATA
@@ -99,6 +100,7 @@ bool tabulate_model(Joint *joint, Text *reason)
     JointModel *model = &joint->model;
     double constants[3], shares[2 * HYSTERESIS_SLIDERS], amplitudes[N_HARMONICS], stiffness;
     *model = (JointModel){.has_kinematic_error = false};
+    model->hysteresis.use_avx = model->friction.use_avx = has_avx();
     error_amplitudes(0, joint->constants, amplitudes);
     for (int i = 0; i < N_HARMONICS; i++)
         model->has_kinematic_error |= amplitudes[i] != 0.0;

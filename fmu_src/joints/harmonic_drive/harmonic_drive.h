@@ -16,6 +16,7 @@ double midline_wind_up(const Curve *curve, double torque);
 
 typedef struct {
     bool is_active;                /* the drive has hysteresis */
+    bool use_avx;                  /* see simd.h */
     double limit_torque;           /* M_f, sum of the friction limits [N.m] */
     double characteristic_wind_up; /* M_f/K_h [rad] */
     double K[HYSTERESIS_SLIDERS], compliance[HYSTERESIS_SLIDERS], limit[HYSTERESIS_SLIDERS];
@@ -34,6 +35,7 @@ double hysteresis_solve_wind_up(const Hysteresis *hysteresis, const Curve *curve
 
 typedef struct {
     bool is_active; /* the drive has dry friction */
+    bool use_avx;   /* see simd.h */
     double K[FRICTION_SLIDERS], compliance[FRICTION_SLIDERS];
 } Friction;
 

@@ -5,6 +5,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from jointfmu.files.outputs import (
     ACTUATOR_FILE,
     ARCHIVE_FILE,
@@ -24,6 +26,8 @@ from ..outputs import check_input_overwrite, declare_output
 
 MAX_PAYLOAD = 1e4
 """Largest payload that the option `--payload` may have [kg]."""
+RINGING_TIME, RINGING_INTERVAL = 1.0, 2e-4
+"""Time after a stop, and interval of its results [s]."""
 
 
 def add_command(command_parsers: SubParsers) -> None:
@@ -62,7 +66,7 @@ def run(args: argparse.Namespace) -> CommandResult:
     )
     if not 0.0 <= args.payload <= MAX_PAYLOAD:
         raise ValueError(f"--payload = {args.payload:g} kg is outside [0, {MAX_PAYLOAD:g}] kg")
-    pictures = args.out / "frequencies.png", args.out / "payload.png"
+    pictures = [args.out / f"{name}.png" for name in ("frequencies", "payload", "ringing")]
     plots.check_picture_path(pictures[0])
     check_outputs(pictures, PICTURE_FILE, args.force)
     written = args.out / f"{args.robot.stem}_elastic.xml"
@@ -109,6 +113,10 @@ def run(args: argparse.Namespace) -> CommandResult:
     if not angles:
         pose = drawn.find_worst_pose(model, axes, pose, grid, args.payload, tip)
     wound, sunk = drawn.draw_deflection_over_payload(pictures[1], model, axes, pose, args.payload, tip)
+    ringing = poses.compute_ringing(
+        model, axes, pose, args.payload, tip, np.arange(0.0, RINGING_TIME, RINGING_INTERVAL)
+    )
+    drawn.draw_ringing(pictures[2], axes, ringing)
     more = []
     with require_package("compile", "mujoco"):
         if args.plugin:
@@ -168,6 +176,13 @@ def run(args: argparse.Namespace) -> CommandResult:
         "wind_up": dict(zip([axis.joint for axis in axes], wound.tolist(), strict=True)),
         "stiffness": {axis.joint: axis.stiffness(torque) for axis, torque in under},
         "tip_error": sunk,
+        "ringing": {
+            axis.joint: {
+                "amplitude": float(result.distance[0]),
+                "last_amplitude": result.last_amplitude,
+            }
+            for axis, result in zip(axes, ringing, strict=True)
+        },
         "plain": {
             "wind_up": dict(zip([axis.joint for axis in axes], plain.tolist(), strict=True)),
             "stiffness": {axis.joint: axis.spring.stiffness(torque) for axis, torque in under},
@@ -244,6 +259,11 @@ def _format_results(result_values: dict[str, Any], model: Any) -> Sequence[str]:
         ),
         f"tip error at {result_values['tip']}: {1e3 * result_values['tip_error']:.4g} mm; in the plain file "
         f"{1e3 * plain['tip_error']:.4g} mm",
+        *(
+            f"stop of {name} from rated torque: the tip rings with {1e3 * values['amplitude']:.3g} mm, after "
+            f"{RINGING_TIME:g} s with {1e3 * values['last_amplitude']:.3g} mm"
+            for name, values in result_values["ringing"].items()
+        ),
         *result_values["notes"],
     ]
 

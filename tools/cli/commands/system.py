@@ -15,6 +15,7 @@ from jointfmu.files.writing import write_text
 
 from ...common import columns
 from ...common.options import require_package
+from ...systems.arm import UNCOUPLED_NOTE
 from ...systems.system import System, list_system_names, load_system
 from ..command import CommandResult, SubParsers, declare_argument, declare_command
 from ..outputs import declare_output
@@ -84,6 +85,8 @@ def _run_system(args: argparse.Namespace) -> CommandResult:
             save_panels(args.plot, systems.system_charts(described, run), systems.MOTION_FIGURE_SIZE)
         paths += [path for path in (args.csv, args.plot) if path]
     notes = [f"warning: {text}" for text in (_warn_long_step(described, *step),) if text]
+    if described.arm:
+        notes.append(f"archives and Modelica model: {UNCOUPLED_NOTE[0].lower()}{UNCOUPLED_NOTE[1:]}")
     texts = [str(path) for path in paths]
     document = {"system": described.name, "built": texts, "longest_step": step[0], "notes": notes}
     return CommandResult(json_document=document, lines=[f"built {path}" for path in texts], notes=notes)

@@ -11,6 +11,7 @@ from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
 
 from ...common.joint_parts import load_tool_module as joint_part
+from ...systems.arm import UNCOUPLED_NOTE
 from ...systems.system import Component as Part
 from ...systems.system import System
 from ...systems.wiring import ConnectionEnd, find_connections
@@ -104,7 +105,7 @@ def render_system_model(
         lines=lines,
         stop=format_number(system.stop_time),
         interval=format_number(system.interval),
-        about=escape_html(f"{system.description}."),
+        about=escape_html(f"{system.description}. {UNCOUPLED_NOTE if system.arm else ''}".strip()),
         sources=_format_value_sources(system),
     )
 

@@ -1,4 +1,4 @@
-"""Plots of a robot with elastic axes: frequencies over poses, wind-up and tip error over payload."""
+"""Plots of a robot with elastic axes: frequencies over poses, wind-up and tip error over payload, ringing."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -10,7 +10,7 @@ from jointfmu.quantity import Array
 
 from ...common import plots
 from .elastic import ElasticAxis
-from .poses import compute_frequencies, compute_torques, compute_weight_deflection
+from .poses import Ringing, compute_frequencies, compute_torques, compute_weight_deflection
 
 if TYPE_CHECKING:
     from mujoco import MjModel
@@ -154,3 +154,13 @@ def draw_deflection_over_payload(
         error_axes.plot(loads, [1e3 * error for _, error in rows], color=plots.RED)
         error_axes.set(xlabel="payload [kg]", ylabel="tip error [mm]", ylim=(0.0, None))
     return rows[-1]
+
+
+def draw_ringing(path: Path, axes: Sequence[ElasticAxis], ringing: Sequence[Ringing]) -> None:
+    """Plot the distance of the tip from its position at rest, after the stop of each motor."""
+    with plots.open_figure(path, FIGURE_SIZE) as figure:
+        panel = figure.subplots()
+        for axis, result in zip(axes, ringing, strict=True):
+            panel.plot(result.times, 1e3 * result.distance, label=f"stop of {axis.joint}", linewidth=1.0)
+        panel.set(xlabel="time after the stop [s]", ylabel="ringing of the tip [mm]", ylim=(0.0, None))
+        panel.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0))

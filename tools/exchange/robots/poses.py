@@ -1,6 +1,7 @@
-"""Natural frequencies, wind-up and tip error of a robot with elastic axes, at given poses."""
+"""Natural frequencies, ringing, wind-up and tip error of a robot with elastic axes, at given poses."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -61,6 +62,60 @@ def compute_frequencies(
     scale = 1.0 / np.sqrt([axis.stiffness(t) for axis, t in zip(axes, load.tolist(), strict=True)])
     squares = np.linalg.eigvalsh(scale[:, None] * mass * scale)
     return np.asarray(np.sort(1.0 / (2.0 * np.pi * np.sqrt(squares))))
+
+
+@dataclass(frozen=True, slots=True)
+class Ringing:
+    """Free vibration of an arm about its position under weight, after one motor stopped.
+
+    times             : (n) [s] from the stop
+    tip_displacement  : (n, 3) [m] of the tip, from its position at rest
+    """
+
+    times: Array
+    tip_displacement: Array
+
+    @property
+    def distance(self) -> Array:
+        """Distance (n) [m] of the tip from its position at rest."""
+        return np.asarray(np.linalg.norm(self.tip_displacement, axis=1))
+
+    @property
+    def last_amplitude(self) -> float:
+        """Largest distance [m] of the tip in the last tenth of the time."""
+        return float(self.distance[-self.times.size // 10 :].max())
+
+
+def compute_ringing(
+    model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, payload: float, tip_body: int, times: Array
+) -> list[Ringing]:
+    """Vibration of the arm after the stop of each motor, at a pose under weight with the other motors held.
+
+    The motor of the axis brakes at a constant rate: its drive carries the rated torque of the drive beyond the
+    weight. When the motor stands still, the arm is released from the wind-up of braking. The equations are
+    M x" + D x' + K x = 0, with the mass matrix M of the links, and damping d and tangent stiffness of the
+    drives. Hysteresis and friction of the drives are neglected: they make the decay faster.
+
+    times : (n) [s] from the stop, evenly spaced from 0
+    """
+    load, jacobian = compute_torques(model, axes, pose, payload, tip_body)
+    mass = compute_link_inertia(model, axes, pose, payload, tip_body)
+    stiffness = np.array([axis.stiffness(t) for axis, t in zip(axes, load.tolist(), strict=True)])
+    damping = np.array([axis.drive.damping for axis in axes])
+    n = len(axes)
+    rates = np.zeros((2 * n, 2 * n))  # of wind-ups, then of their speeds
+    rates[:n, n:] = np.eye(n)
+    rates[n:, :n] = -np.linalg.solve(mass, np.diag(stiffness))
+    rates[n:, n:] = -np.linalg.solve(mass, np.diag(damping))
+    values, modes = np.linalg.eig(rates)
+    decay = np.exp(np.outer(times, values))
+    results = []
+    for k, axis in enumerate(axes):
+        start = np.zeros(2 * n)
+        start[:n] = mass[:, k] * axis.drive.rated_torque / mass[k, k] / stiffness
+        wind_up = ((decay * np.linalg.solve(modes, start)) @ modes[:n].T).real
+        results.append(Ringing(times, wind_up @ jacobian.T))
+    return results
 
 
 def find_largest_stable_step(model: "MjModel", axes: Sequence[ElasticAxis], pose: Array) -> float:

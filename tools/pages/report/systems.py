@@ -173,12 +173,14 @@ SystemResults = Mapping[str, Array]
 
 
 def output_units(system: System) -> dict[str, str]:
-    """Units of all outputs of a system and of `time`: {COMPONENT.OUTPUT: unit}."""
+    """Units of all outputs, of the tip of an arm, and of `time`: {COMPONENT.OUTPUT: unit}."""
     outputs = {
         f"{name}.{v.name}": v.unit
         for name, part in system.components.items()
         for v in find_model(part).outputs
     }
+    if system.arm:
+        outputs |= dict.fromkeys((f"tip.{x}" for x in "xyz"), "m")
     return {"time": "s"} | outputs
 
 
@@ -258,7 +260,7 @@ def _motion_figure(system: System, results: SystemResults) -> Figure:
         "Charts: torques of the drives on their links; wind-up of the drives; tip error, the distance of the "
         f"tip from its position with rigid drives. The tip error is at most {1e3 * worst:.2f} mm, and "
         f"{1e3 * error[-1]:.2f} mm at the end, under the weight. The {soft} has the largest wind-up, "
-        f"{1e3 * np.max(largest):.2f} mrad. The loads of the drives are those of a rigid arm: the effect of "
-        "one drive's wind-up on the other drives is neglected.",
+        f"{1e3 * np.max(largest):.2f} mrad. The links are coupled, with weight, Coriolis and gyroscopic "
+        "terms.",
         system_charts(system, results),
     )

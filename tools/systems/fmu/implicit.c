@@ -9,7 +9,7 @@
 #include "instance.h"
 #include "system.h"
 
-#define DEFAULT_TOLERANCE 1e-4 /* of the speeds of a step, relative to `speed_scale`; a host may set a smaller one, */
+#define DEFAULT_TOLERANCE 1e-5 /* of the speeds of a step, relative to `speed_scale`; a host may set a smaller one, */
 #define MIN_TOLERANCE 1e-10    /* down to this one */
 #define NEWTON_TOLERANCE_RATIO 1e-2    /* residual correction of Newton's method over the tolerance */
 #define WHOLE_STEP_TOLERANCE_RATIO 1.0 /* the same for a whole step, whose error may be 15 tolerances */

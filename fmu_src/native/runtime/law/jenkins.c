@@ -34,6 +34,14 @@ static inline int first_at_limit(const double *limit_excess, int n)
     return k;
 }
 
+/* Vectorise by four: two pairs of sliders hide the latency of dependent operations. No row overlaps another. */
+#ifdef __clang__
+#pragma clang diagnostic ignored "-Wpass-failed" /* sanitizers prevent it */
+#define VECTORIZE_4 _Pragma("clang loop unroll(disable) vectorize(assume_safety) vectorize_width(4)")
+#else
+#define VECTORIZE_4
+#endif
+
 /* Along one direction */
 
 enum {
@@ -65,25 +73,39 @@ static inline void add_one(int l, const double *y, double *restrict force_end, L
     lanes->loss[l] += y[MAPPING_1D_LOSS];
 }
 
-void sliders_advance_1d(int n, const Sliders1D *s, double displacement, double *restrict force_end,
-                        SliderResultant *sum)
+ALWAYS_INLINE void advance_each_1d(int n, const Sliders1D *s, double displacement, double *restrict force_end,
+                                   SliderResultant *sum)
 {
     const Sliders1D own = *s; /* a copy, which no write to the results can alias */
-    double y[N_MAPPING_1D];
+    const bool has_constant_limits = own.limit_start == own.limit_end;
     Lanes lanes = {.x = {0.0}};
-    if (own.limit_start == own.limit_end)
-        for (int i = 0; i < n; i += LANES)
+    for (int i = 0; i < n; i += LANES)
+        if (has_constant_limits) {
+            VECTORIZE_4
             for (int l = 0; l < LANES; l++) {
+                double y[N_MAPPING_1D];
                 return_map_one_constant_limit(&own, i + l, displacement, y);
                 add_one(l, y, force_end + i + l, &lanes);
             }
-    else
-        for (int i = 0; i < n; i += LANES)
+        } else {
+            VECTORIZE_4
             for (int l = 0; l < LANES; l++) {
+                double y[N_MAPPING_1D];
                 return_map_one(&own, i + l, displacement, y);
                 add_one(l, y, force_end + i + l, &lanes);
             }
+        }
     *sum = sum_lanes(&lanes);
+}
+DEFINE_BASELINE_AND_AVX(advance_each_1d,
+                        (int n, const Sliders1D *s, double displacement, double *restrict force_end,
+                         SliderResultant *sum),
+                        (n, s, displacement, force_end, sum))
+
+void sliders_advance_1d(bool use_avx, int n, const Sliders1D *s, double displacement, double *force_end,
+                        SliderResultant *sum)
+{
+    (use_avx ? advance_each_1d_avx : advance_each_1d_baseline)(n, s, displacement, force_end, sum);
 }
 
 double sliders_force_1d(int n, const Sliders1D *s, double displacement, double *tangent)
@@ -191,14 +213,6 @@ int sliders_advance_along_x(int n, const Sliders2D *s, double *force_end, Slider
     *sum = sum_lanes(&lanes);
     return first;
 }
-
-/* Vectorise by four: two pairs of sliders hide the latency of dependent operations. No row overlaps another. */
-#ifdef __clang__
-#pragma clang diagnostic ignored "-Wpass-failed" /* sanitizers prevent it */
-#define VECTORIZE_4 _Pragma("clang loop vectorize(assume_safety) vectorize_width(4)")
-#else
-#define VECTORIZE_4
-#endif
 
 ALWAYS_INLINE void predict_each(int n, const Sliders2D *s, double *const force_end[2], double *limit_excess)
 {

@@ -54,7 +54,8 @@ typedef struct {
 
 /* Return-map the sliders for a displacement. If `limit_start` and `limit_end` are the same array, the limits are
  * constant, which is faster. */
-void sliders_advance_1d(int n, const Sliders1D *s, double displacement, double *force_end, SliderResultant *sum);
+void sliders_advance_1d(bool use_avx, int n, const Sliders1D *s, double displacement, double *force_end,
+                        SliderResultant *sum);
 /* Sum of the forces after a displacement at constant limits, and its tangent stiffness. */
 double sliders_force_1d(int n, const Sliders1D *s, double displacement, double *tangent);
 /* Derivative of the dissipated energy with respect to the displacement, at constant limits. */

@@ -612,7 +612,7 @@ equation
   annotation (
     experiment(StopTime=1.5, Interval=0.0001, Tolerance=1e-8),
     Documentation(info="<html>
-<p>A serial arm whose six harmonic drives wind up under weight and inertia while the motors follow one motion.</p>
+<p>A serial arm whose six harmonic drives wind up under weight and inertia while the motors follow one motion. The axes are not coupled: tip errors are right within 1 %, but the oscillation of the shipped arm after its motion is too small by factors up to 60 (wrist). The one FMU of the system has the coupled dynamics.</p>
 <table>
 <tr><th>number</th><th>value</th><th>source</th></tr>
 <tr><td><code>base_motor.start</code></td><td>0.1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>

@@ -1,0 +1,150 @@
+"""A joint controller tuned on the rigid arm, on constant springs and on the FMU of the arm: what each does there.
+
+The builds of the FMU take a few minutes. Needs the extra `mujoco`.
+"""
+
+import subprocess
+import sys
+from importlib.resources import files
+from pathlib import Path
+
+import fmpy
+import matplotlib.pyplot as plt
+import mujoco
+import numpy as np
+from fmpy.fmi3 import FMU3Slave
+from scipy.linalg import expm
+
+import jointfmu
+
+DRIVES = {"joint2": "CSG-40-100", "joint3": "CSG-25-100"}  # the other joints are rigid
+START, TRAVEL = {"joint2": 0.7, "joint3": 0.8}, 0.15  # rad; all joints move by the same travel
+STEP, MOVE, STOP = 1e-3, 0.3, 0.8  # s: period of the controller, time of the motion, end
+DAMPING, PAYLOAD = 0.7, 3.0  # 1, kg
+MAX_RINGING = 1e-4  # m, of the tip in the last 0.2 s
+ROBOT, FMU = str(files("jointfmu_models") / "robots/six_axis.xml"), Path("robot/fmi3/six_axis.fmu")
+
+if not FMU.exists():
+    words = ["--drive", *(f"{j}={d}" for j, d in DRIVES.items()), "--payload", str(PAYLOAD), "--fmu"]
+    words += ["--pose", *(f"{j}={q}" for j, q in START.items()), "--out", "robot"]
+    subprocess.run([sys.executable, "-m", "jointfmu", "robot", ROBOT, *words], check=True)
+
+# The arm at its start pose: mass matrix [kg.m2] of links and payload, Jacobian of the tip, rotors, stiffness
+spec = mujoco.MjSpec.from_file(ROBOT)
+tip = spec.body("flange")
+tip.mass, tip.inertia, tip.explicitinertial = PAYLOAD, [1e-9] * 3, True
+tip.ipos, tip.iquat = [0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]
+model = spec.compile()
+data = mujoco.MjData(model)
+names = [model.joint(k).name for k in range(model.njnt)]
+n, driven = len(names), np.array([name in DRIVES for name in names])
+data.qpos[:] = [START.get(name, 0.0) for name in names]
+mujoco.mj_forward(model, data)
+mass, jacobian = np.zeros((n, n)), np.zeros((3, n))
+mujoco.mj_fullM(model, data, mass)
+mujoco.mj_jacBody(model, data, jacobian, None, model.body("flange").id)
+rotors = model.dof_armature.copy()
+inertia = mass.diagonal()  # of link and rotor
+drives = {name: jointfmu.drive(size).values for name, size in DRIVES.items()}
+K = np.array([drives[name]["K3"] if name in DRIVES else 0.0 for name in names])
+d = np.array([drives[name]["d"] if name in DRIVES else 0.0 for name in names])
+ratio = np.array([drives[name]["ratio"] if name in DRIVES else 1.0 for name in names])
+load = data.qfrc_bias / ratio  # motor torques that hold the weight at the start
+
+
+def target(time):
+    """Angle from the start [rad] and speed [rad/s] of all joints: a quintic from rest to rest."""
+    x = min(time / MOVE, 1.0)
+    return TRAVEL * x**3 * (10 - 15 * x + 6 * x * x), TRAVEL * 30 * x * x * (1 - x) ** 2 / MOVE
+
+
+def torque(bandwidth, time, q, motor_speed):
+    """Torque at the joints [N.m]: angle of the link, speed of the motor; the same bandwidth [Hz] for all."""
+    w, (angle, speed) = 2.0 * np.pi * bandwidth, target(time)
+    return inertia * (w**2 * (angle - q) + 2.0 * DAMPING * w * (speed - motor_speed))
+
+
+def simulate_linear(bandwidth, stiffness):
+    """Tip (times, 3) [m] from its start; stiffness None: rigid joints. The weight is compensated."""
+    if stiffness is None:
+        M, S = mass, np.zeros((n, n))
+        D, motors = S, np.arange(n)
+    else:  # angles of all links, then of the rotors of the driven joints at the joint
+        elastic = np.flatnonzero(driven)
+        motors = np.arange(n)
+        motors[elastic] = n + np.arange(elastic.size)
+        M = np.zeros((n + elastic.size,) * 2)
+        M[:n, :n] = mass - np.diag(np.where(driven, rotors, 0.0))
+        M[n:, n:] = np.diag(rotors[elastic])
+        B = np.zeros((elastic.size, len(M)))  # wind-up of the drives
+        B[np.arange(elastic.size), elastic], B[np.arange(elastic.size), motors[elastic]] = 1.0, -1.0
+        S, D = B.T @ np.diag(stiffness[elastic]) @ B, B.T @ np.diag(d[elastic]) @ B
+    m = len(M)
+    A = np.zeros((2 * m + n, 2 * m + n))
+    A[:m, m : 2 * m] = np.eye(m)
+    A[m : 2 * m, :m], A[m : 2 * m, m : 2 * m] = -np.linalg.solve(M, S), -np.linalg.solve(M, D)
+    A[m : 2 * m, 2 * m :] = np.linalg.solve(M, np.eye(m)[:, motors])
+    step, x, rows = expm(A * STEP), np.zeros(2 * m + n), []
+    for k in range(round(STOP / STEP)):
+        x[2 * m :] = torque(bandwidth, k * STEP, x[:n], x[m : 2 * m][motors])
+        x = step @ x
+        rows.append(jacobian @ x[:n])
+    return np.array(rows)
+
+
+description = fmpy.read_model_description(FMU)
+refs = {v.name: v.valueReference for v in description.modelVariables}
+motors = [refs[f"{name}.motor.w" if name in DRIVES else f"{name}.w"] for name in names]
+read = [refs[f"{name}.phi"] for name in names] + motors + [refs[f"tip.{x}"] for x in "xyz"]
+fmu = FMU3Slave(
+    guid=description.guid,
+    unzipDirectory=fmpy.extract(FMU),
+    modelIdentifier=description.coSimulation.modelIdentifier,
+    instanceName="arm",
+)
+fmu.instantiate()
+
+
+def simulate_fmu(bandwidth):
+    """Tip (times, 3) [m] from its start; the arm first sags by its weight and rests for a second."""
+    fmu.reset()
+    fmu.enterInitializationMode()
+    fmu.exitInitializationMode()
+    start, rows = data.qpos, []
+    for k in range(round((1.0 + STOP) / STEP)):
+        q, speed, place = np.split(np.array(fmu.getFloat64(read)), [n, 2 * n])
+        rows.append(place)
+        tau = torque(bandwidth, k * STEP - 1.0 if k * STEP > 1.0 else 0.0, q - start, speed / ratio)
+        fmu.setFloat64([refs[f"{name}.tau_motor"] for name in names], (load + tau / ratio).tolist())
+        fmu.doStep(k * STEP, STEP)
+    return np.array(rows)[round(1.0 / STEP) :] - rows[0]
+
+
+def ringing(tip):
+    """Largest movement of the tip [m] in the last 0.2 s."""
+    return np.linalg.norm(np.ptp(tip[-round(0.2 / STEP) :], axis=0)) if np.isfinite(tip).all() else np.inf
+
+
+def tune(simulate):
+    """Largest bandwidth [Hz] up to 60 at which the tip rests after the motion, in steps of 5 %."""
+    bandwidth = 60.0
+    while bandwidth > 1.0 and not ringing(simulate(bandwidth)) < MAX_RINGING:
+        bandwidth /= 1.05
+    return bandwidth
+
+
+models = {
+    "rigid arm": lambda b: simulate_linear(b, None),
+    "constant springs": lambda b: simulate_linear(b, K),
+    "FMU": simulate_fmu,
+}
+figure, axes = plt.subplots(layout="constrained")
+print("tuned on          bandwidth [Hz]  ringing there [mm]  on the FMU [mm]")
+for name, simulate in models.items():
+    bandwidth = tune(simulate)
+    moved = simulate_fmu(bandwidth)
+    print(f"{name:17} {bandwidth:14.1f}  {1e3 * ringing(simulate(bandwidth)):18.3f}  {1e3 * ringing(moved):15.3f}")
+    axes.plot(STEP * np.arange(len(moved)), 1e3 * moved[:, 2], label=f"{name}, {bandwidth:.0f} Hz")
+axes.set(xlabel="time [s]", ylabel="height of the tip on the FMU [mm]")
+axes.legend(frameon=False)
+figure.savefig("robot_controller.png")
