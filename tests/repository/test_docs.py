@@ -252,7 +252,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
         env=environment_with("docs", tmp_path_factory.mktemp("blocker")),
         capture_output=True,
         text=True,
-        timeout=200,
+        timeout=600,
     )
     assert made.returncode == 0, made.stderr
     return out
