@@ -386,7 +386,7 @@ def test_search_works_from_a_file(site: Path, tmp_path: Path) -> None:
     )
     page.unlink()
     (title,) = re.findall(r"<title>([^<]*)", done.stdout)
-    assert "systems.html" in title, done.stderr[-2000:]
+    assert "systems_explanation.html" in title, done.stderr[-2000:]
 
 
 # Code
