@@ -37,7 +37,8 @@ def run_notebook(notebook: NotebookNode, folder: Path) -> None:
     """
     client = NotebookClient(
         notebook,
-        timeout=600,
+        timeout=1800,  # of one cell [s]
+        startup_timeout=300,
         coalesce_streams=True,
         extra_arguments=["--log-level=ERROR"],
         resources={"metadata": {"path": str(folder)}},
