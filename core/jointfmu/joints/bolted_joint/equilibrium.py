@@ -45,22 +45,22 @@ from .kinematics import opening_jacobian, rigid_opening, tangential_displacement
 RELATIVE_TOLERANCE = 1e-13
 """Residual over the sum of all forces [1] that counts as equilibrium: the round-off of the sum. The load at
 which the contact closes is part of the sum: all other forces vanish if the joint is open."""
-CANCELLATION_RATIO = 0.02
+RIGID_OPENING_FORCE_FACTOR = 0.02
 """Factor on the force by rigid-body opening in the sum of RELATIVE_TOLERANCE [1]: modal opening cancels
 nearly all of this force."""
 INTERMEDIATE_TOLERANCE_FACTOR = 1e7
 """Tolerance inside a divided load step over the tolerance at its end [1]."""
 MAX_NEWTON_ITERATIONS, MAX_LINE_SEARCH = 16, 6
 """Newton iterations at one step fraction [1], and trial lengths in each iteration [1]."""
-JACOBIAN_REUSE_RATIO = 0.03
+JACOBIAN_REUSE_RESIDUAL_DECREASE = 0.03
 """Residual after an iteration over the residual before [1], below which J is reused."""
-MAX_ENERGY_SLOPE_RATIO = 0.5
+MAX_FINAL_OVER_INITIAL_ENERGY_SLOPE = 0.5
 """Energy slope at the end of a correction over its initial size [1], above which the step is too long."""
-MIN_LENGTH_RATIO = 0.1
+MIN_OVER_PREVIOUS_CORRECTION_LENGTH = 0.1
 """Smallest length of a shortened correction, over the length of the previous trial [1]."""
 MIN_LOAD_STEP = 1e-4
 """Increment of the step fraction [1] below which a load step is given up."""
-DIFFERENCE_STEP = 1e-7
+TRACTION_DIFFERENCE_STEP = 1e-7
 """Step of finite differences of the tractions, over the largest patch approach at tightening [1].
 
 Without preload all patches are open: then over the approach at which the contact has closed, if that is
@@ -239,7 +239,7 @@ class LoadStep:
         force_sum = assembly.point_area @ (normal.pressure + preload_pressure)
         force_sum += np.sum(np.abs(bolt_force_change)) + np.sum(assembly.patch_area @ np.abs(traction))
         rigid = np.max(np.abs(rigid_opening(assembly.contact.points.position, relative_displacement)))
-        force_sum += (assembly.point_area @ normal.stiffness) * rigid * CANCELLATION_RATIO
+        force_sum += (assembly.point_area @ normal.stiffness) * rigid * RIGID_OPENING_FORCE_FACTOR
         force_sum += assembly.nominal_area * assembly.contact.pressure_curve.closing_end_load
         tolerance = float(RELATIVE_TOLERANCE * force_sum)
         return TrialState(modal_coordinates, normal, increment, friction, elongation, residual, tolerance)
@@ -281,7 +281,9 @@ class LoadStep:
         Finite differences.
         """
         first = self.assembly.contact.pressure_curve.displacement[0]
-        size = DIFFERENCE_STEP * float(np.max(np.maximum(self.preload_state.patch_approach, 0.0) - first))
+        size = TRACTION_DIFFERENCE_STEP * float(
+            np.max(np.maximum(self.preload_state.patch_approach, 0.0) - first)
+        )
         traction, columns = trial_state.friction_update.traction, []
         for motion in size * np.eye(4):
             increment = trial_state.tangential_increment + motion[:3]
@@ -359,7 +361,8 @@ def solve_newton(
     Returns the last trial state, and whether the method converged.
 
     It starts at modal coordinates a (k) [m] with the Jacobian J (k, k) [N/m] of an earlier state. J is
-    reused, with Broyden's update, after an iteration that reduces the residual to JACOBIAN_REUSE_RATIO.
+    reused, with Broyden's update, after an iteration that reduces the residual to
+    JACOBIAN_REUSE_RESIDUAL_DECREASE.
     """
     q = load_step.displacement_at(step_fraction)
     tolerance_factor = 1.0 if step_fraction == 1.0 else INTERMEDIATE_TOLERANCE_FACTOR
@@ -371,7 +374,7 @@ def solve_newton(
             return state, True
         if iteration == MAX_NEWTON_ITERATIONS:
             break
-        if not norm < JACOBIAN_REUSE_RATIO * last_norm:
+        if not norm < JACOBIAN_REUSE_RESIDUAL_DECREASE * last_norm:
             residual_jacobian, corrections, jacobian_is_current = load_step.residual_jacobian(state), [], True
         try:
             correction = apply_broyden(
@@ -397,10 +400,10 @@ def search_line(
 
     Returns also whether the correction was applied in full.
 
-    The energy slope [J] is residual . correction. If it exceeds MAX_ENERGY_SLOPE_RATIO times its first value
-    at the end, the correction is shortened by regula falsi, or dropped if the Jacobian was computed at an
-    earlier state. If the first value is positive, too, regula falsi has no zero: the correction is shortened
-    to MIN_LENGTH_RATIO.
+    The energy slope [J] is residual . correction. If it exceeds MAX_FINAL_OVER_INITIAL_ENERGY_SLOPE times its
+    first value at the end, the correction is shortened by regula falsi, or dropped if the Jacobian was
+    computed at an earlier state. If the first value is positive, too, regula falsi has no zero: the
+    correction is shortened to MIN_OVER_PREVIOUS_CORRECTION_LENGTH.
     """
     length, energy_slope_0 = 1.0, float(trial_state.residual @ correction)
     for shortenings in range(MAX_LINE_SEARCH):
@@ -408,13 +411,13 @@ def search_line(
             relative_displacement, trial_state.modal_coordinates + length * correction
         )
         energy_slope_1 = float(trial.residual @ correction)
-        if not energy_slope_1 > MAX_ENERGY_SLOPE_RATIO * abs(energy_slope_0):
+        if not energy_slope_1 > MAX_FINAL_OVER_INITIAL_ENERGY_SLOPE * abs(energy_slope_0):
             return trial, shortenings == 0
         if not jacobian_is_current:
             return trial_state, False
         has_zero = energy_slope_0 < 0.0 < energy_slope_1
         zero = energy_slope_0 / (energy_slope_0 - energy_slope_1) if has_zero else 0.0
-        length *= max(zero, MIN_LENGTH_RATIO)
+        length *= max(zero, MIN_OVER_PREVIOUS_CORRECTION_LENGTH)
     return trial, False
 
 
