@@ -39,16 +39,20 @@ __all__ = [
     "prepare_metadata_for_build_wheel",
 ]
 
-ROOTS = {
+PACKAGE_FOLDERS = {
     "jointfmu": "core/jointfmu",
     "jointfmu_fmu_src": "fmu_src",
     "jointfmu_tools": "tools",
     "jointfmu_models": "models",
 }
 """Import names of the packages of the distribution, with their folders in the repository."""
-KERNEL_FOLDER = "core"
+CORE_PACKAGE_FOLDER = "core"
 """Folder of the package `jointfmu` (laws and joints), for the module search path of an editable wheel."""
-PAGES = {"Documentation": "/tree/HEAD/docs", "Changelog": "/blob/HEAD/CHANGELOG.md", "Issues": "/issues"}
+PROJECT_URL_PATHS = {
+    "Documentation": "/tree/HEAD/docs",
+    "Changelog": "/blob/HEAD/CHANGELOG.md",
+    "Issues": "/issues",
+}
 """{label of a project URL: path below the address of the repository}."""
 
 
@@ -66,13 +70,15 @@ def setup_arguments() -> dict[str, Any]:
     return {
         "packages": [
             name
-            for root, folder in ROOTS.items()
+            for root, folder in PACKAGE_FOLDERS.items()
             for name in (root, *(f"{root}.{inner}" for inner in setuptools.find_packages(folder)))
         ],
-        "package_dir": ROOTS,
+        "package_dir": PACKAGE_FOLDERS,
         "long_description": make_description(Path("README.md").read_text(encoding="utf-8"), url),
         "long_description_content_type": "text/markdown",
-        "project_urls": {"Repository": url, **{n: url + path for n, path in PAGES.items()}} if url else {},
+        "project_urls": {"Repository": url, **{n: url + path for n, path in PROJECT_URL_PATHS.items()}}
+        if url
+        else {},
     }
 
 
@@ -85,7 +91,7 @@ def build_editable(
     repository in a folder `jointfmu` would be taken for the package, as a namespace package.
     """
     name: str = build_meta.build_editable(wheel_directory, config_settings, metadata_directory)
-    _append_search_path(Path(wheel_directory, name), Path(KERNEL_FOLDER).resolve())
+    _append_search_path(Path(wheel_directory, name), Path(CORE_PACKAGE_FOLDER).resolve())
     return name
 
 

@@ -70,8 +70,6 @@ def law_variables(parameters: ParameterFile) -> dict[str, object]:
     """{name: value} of the interface law that the template of a joint's page uses.
 
     The values are the name of the law, whether it is `roughness` or `table`, their template, and numbers.
-
-    Its name; whether it is `roughness` or `table`, and their template; numbers.
     """
     table: Any = getattr(parameters.values, "table", None)
     is_rough, is_table = parameters.law == ROUGHNESS_LAW, isinstance(table, StiffnessTable)

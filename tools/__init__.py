@@ -9,11 +9,11 @@ from .joints import PARTS
 __all__ = ["PARTS"]
 
 
-def _get_kernel_result(key: str, compute_result: Callable[[], bytes]) -> bytes:
+def _get_stored_result(key: str, compute_result: Callable[[], bytes]) -> bytes:
     """Stored result of a long computation of the package `jointfmu`, or compute and store it."""
-    from jointfmu_fmu_src.native.compiled.compiled_models import get_kernel_result
+    from jointfmu_fmu_src.native.compiled.compiled_models import get_stored_result
 
-    return get_kernel_result(key, compute_result)
+    return get_stored_result(key, compute_result)
 
 
-set_result_store(_get_kernel_result)
+set_result_store(_get_stored_result)

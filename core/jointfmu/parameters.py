@@ -54,12 +54,12 @@ _MAX_SHOWN_LENGTH = 60
 """Largest number of characters [1] of a wrong value in a message."""
 _NUMBERS_PER_LINE = 5
 """Numbers of a list per line of the file [1]."""
-_INPUTS_PREFIX = "inputs."
+_INPUTS_SECTION_PREFIX = "inputs."
 """Prefix of the structured names of the start values of inputs."""
 RELATIVE_HEIGHT_TOLERANCE = 0.01
 """Largest relative difference [1] between h of a law and the h computed from the section [roughness]: heights
 are printed with two digits."""
-_ROUGHNESS_PREFIX, _COMPARISON_PREFIX = "roughness.", "comparison."
+_ROUGHNESS_SECTION_PREFIX, _COMPARISON_SECTION_PREFIX = "roughness.", "comparison."
 """Prefixes of the names of surface heights: for a law with the parameter h, and for a law without it."""
 
 
@@ -195,7 +195,7 @@ def load_parameter_file(path: str | Path, joint_name: str | None = None) -> Para
     body = {k: v for k, v in document.items() if k not in ("schema", "joint", "law", "name")}
     cls = laws[law]
     prefix = _heights_prefix(cls)
-    if prefix == _COMPARISON_PREFIX and _ROUGHNESS_PREFIX[:-1] in body:
+    if prefix == _COMPARISON_SECTION_PREFIX and _ROUGHNESS_SECTION_PREFIX[:-1] in body:
         raise ValueError(
             f"{path}: [roughness] does not act on law = {law!r}; allowed are [roughness] beside a law with a "
             "height, and [comparison] for what the level is judged by"
@@ -203,7 +203,7 @@ def load_parameter_file(path: str | Path, joint_name: str | None = None) -> Para
     declared = declared_entries(stated, cls)
     keys = ("value", "unit", "kind", "source", "range")
     values, origins, sources = read_entries(path, declared, body, keys)
-    input_values, surface_heights = _pop_section(values, _INPUTS_PREFIX), _pop_section(values, prefix)
+    input_values, surface_heights = _pop_section(values, _INPUTS_SECTION_PREFIX), _pop_section(values, prefix)
     try:
         inputs = _check_start_values(stated, input_values)
         heights = roughness.check_heights(surface_heights, prefix)
@@ -257,7 +257,7 @@ def _compute_law_height(
     if name not in entry_values:
         return {name: stated}
     if not abs(entry_values[name] / stated - 1.0) <= RELATIVE_HEIGHT_TOLERANCE:
-        makers = ", ".join(_ROUGHNESS_PREFIX + height for height in heights)
+        makers = ", ".join(_ROUGHNESS_SECTION_PREFIX + height for height in heights)
         raise ValueError(
             f"{name} = {entry_values[name]:g} m does not agree with {makers}, which give {stated:.4g} m: "
             f"state one of them, or both within {RELATIVE_HEIGHT_TOLERANCE:.1%}"
@@ -376,22 +376,22 @@ def list_entries(sections: Mapping[str, object], prefix: str = "") -> list[tuple
 def _input_fields(joint_name: str) -> dict[str, Field[Any]]:
     """{`inputs.NAME`: field} of the inputs of all models of a joint."""
     inputs = (v for model in KINDS[joint_name].models for v in model.inputs)
-    return {_INPUTS_PREFIX + v.name: quantity_field(v.unit, v.doc, ge=v.minimum) for v in inputs}
+    return {_INPUTS_SECTION_PREFIX + v.name: quantity_field(v.unit, v.doc, ge=v.minimum) for v in inputs}
 
 
 def _heights_prefix(cls: type) -> str:
     """Prefix of the entries with surface heights: `roughness.` if the law has h, else `comparison.`."""
     return (
-        _ROUGHNESS_PREFIX
+        _ROUGHNESS_SECTION_PREFIX
         if any(is_combined_height(name) for name, _ in flatten_fields(cls))
-        else _COMPARISON_PREFIX
+        else _COMPARISON_SECTION_PREFIX
     )
 
 
 def is_combined_height(parameter_name: str) -> bool:
     """Whether a parameter of a law is the combined rms height h of both surfaces."""
     return parameter_name.split(".")[-1] == "h" and not parameter_name.startswith(
-        (_ROUGHNESS_PREFIX, _COMPARISON_PREFIX)
+        (_ROUGHNESS_SECTION_PREFIX, _COMPARISON_SECTION_PREFIX)
     )
 
 
@@ -417,7 +417,7 @@ def _check_start_values(joint_name: str, start_values: Mapping[str, Any]) -> dic
 
     Raises ValueError, one line, naming every unknown name and every value outside its interval.
     """
-    named = {_INPUTS_PREFIX + name: value for name, value in start_values.items()}
+    named = {_INPUTS_SECTION_PREFIX + name: value for name, value in start_values.items()}
     if texts := find_problems(named, _input_fields(joint_name)):
         raise ValueError("; ".join(texts))
     return {name: float(value) for name, value in start_values.items()}
@@ -430,7 +430,7 @@ def format_parameter_file(parameters: ParameterFile) -> str:
     values += [(parameters.heights_prefix + name, value) for name, value in parameters.roughness.items()]
     if parameters.inputs:
         declared |= _input_fields(parameters.joint)
-        values += [(_INPUTS_PREFIX + name, value) for name, value in parameters.inputs.items()]
+        values += [(_INPUTS_SECTION_PREFIX + name, value) for name, value in parameters.inputs.items()]
     lines = [f"schema = {SCHEMA_VERSION}", f'joint = "{parameters.joint}"']
     if parameters.joint in KINDS:  # else a partner of a joint
         lines.append(f'law = "{parameters.law}"')

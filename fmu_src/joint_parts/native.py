@@ -80,7 +80,7 @@ REAL_CONSTANT_NAMES: ModuleConstants = {
     ),
 }
 """Real constants of Python modules that the C of every joint with tables has under the same names."""
-INTEGER_CONSTANT_NAMES: ModuleConstants = {curve: ("MAX_REFINEMENT",), interface: ("MAX_ITERATIONS",)}
+INTEGER_CONSTANT_NAMES: ModuleConstants = {curve: ("MAX_STEP_COUNT_FACTOR",), interface: ("MAX_ITERATIONS",)}
 """Integer constants of Python modules that the C of every joint with tables has under the same names."""
 
 
@@ -197,6 +197,6 @@ def shared_definitions(shared_file_stems: Sequence[str]) -> CDefinitions:
     if "approach" not in shared_file_stems:
         return tables
     steps = {"APPROACH_STEPS": curve.MIN_STEPS_PER_LOG_AREA, "CLOSING_STEPS": curve.CLOSING_STEPS}
-    steps["MIN_SPLINE_STEPS_RATIO"] = curve.MIN_SPLINE_STEPS_RATIO
-    ratio = {"CLOSING_AREA_RATIO": curve.CLOSING_AREA_RATIO}
+    steps["MIN_STEP_FACTOR_BETWEEN_KINKS"] = curve.MIN_STEP_FACTOR_BETWEEN_KINKS
+    ratio = {"CLOSING_END_OVER_PLASTIC_SPOT_AREA": curve.CLOSING_END_OVER_PLASTIC_SPOT_AREA}
     return tables | CDefinitions(steps, ratio) | define_quadrature("APPROACH_GAUSS", curve.GAUSS_RULE)

@@ -15,11 +15,11 @@ from jointfmu.quantity import Interval
 
 from .reference import round_to_digits
 
-OPEN_END_DISTANCE_RATIO = 1e-6
+OPEN_END_DISTANCE_OVER_WIDTH = 1e-6
 """Distance of a boundary value from an open end over the width of the interval [1]."""
 BISECTION_STEPS = 5
 """Number of bisection steps [1] for a boundary value that the joint accepts."""
-INWARD_SHIFT_RATIO = 0.02
+INWARD_SHIFT_OVER_DISTANCE = 0.02
 """Shift from the last accepted value towards that of the file, over their distance [1]: round-off margin."""
 
 
@@ -48,7 +48,7 @@ def find_boundary_values(
             if not math.isfinite(end) or (end == 0.0 and is_open and not math.isfinite(other)):
                 continue
             width = abs(other - end) if math.isfinite(other) else max(abs(value - end), 1.0)
-            first = end + math.copysign(OPEN_END_DISTANCE_RATIO * width, value - end) if is_open else end
+            first = end + math.copysign(OPEN_END_DISTANCE_OVER_WIDTH * width, value - end) if is_open else end
             boundary_value = _nearest_accepted_value(
                 float(first), float(value), bool(meta["whole"]), partial(is_accepted, name)
             )
@@ -67,5 +67,5 @@ def _nearest_accepted_value(
     for _ in range(BISECTION_STEPS):
         middle = 0.5 * (refused + accepted)
         refused, accepted = (refused, middle) if is_accepted(round_value(middle)) else (middle, accepted)
-    inward = float(round_value(accepted + INWARD_SHIFT_RATIO * (file_value - accepted)))
+    inward = float(round_value(accepted + INWARD_SHIFT_OVER_DISTANCE * (file_value - accepted)))
     return inward if is_accepted(inward) else None

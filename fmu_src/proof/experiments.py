@@ -30,7 +30,7 @@ QUARTER_CYCLE_LEVEL_COUNT = 6
 """Number of levels of the driven input in a quarter cycle of the loop [1]."""
 LOOP_CYCLE_COUNT = 1
 """Number of cycles of the loop after first loading [1]."""
-SAMPLING_INTERVAL_RATIO = 0.25
+SAMPLING_OVER_RAMP_INTERVAL = 0.25
 """Sampling interval of a time-dependent model over the interval of its ramp [1]."""
 SAMPLE_COUNT = 6
 """Number of experiments in which all parameters are varied [1]."""
@@ -160,7 +160,7 @@ def _compute_ramp(
     else:
         loading = np.linspace(max(start, model.ramp.onset_value), end, level_count + 1)[1:]
         ramp_levels = np.array([round_to_digits(x) for x in (start, *loading)])
-    interval = model.ramp.step_duration * (SAMPLING_INTERVAL_RATIO if model.is_time_dependent else 1.0)
+    interval = model.ramp.step_duration * (SAMPLING_OVER_RAMP_INTERVAL if model.is_time_dependent else 1.0)
     drive = Stimulus(model.ramp.input_name, ramp_levels, interval)
     return ReferenceExperiment(
         purpose,

@@ -18,7 +18,7 @@ from . import standard
 from .experiments import ReferenceExperiment
 from .reference import SIGNIFICANT_DIGITS
 from .series import format_csv
-from .standard import MIN_SCALE_RATIO, SOLVER_TOLERANCE_RATIO
+from .standard import MIN_SCALE_OVER_NOMINAL, SOLVER_OVER_EXPERIMENT_TOLERANCE
 
 REFERENCE_TOLERANCE = 1e-5
 """Relative tolerance of reference results [1].
@@ -31,7 +31,7 @@ EXPERIMENT_TEXT_PATH = "documentation/fmi-ls-ref.txt"
 """Path in an FMU of the text that explains its experiments."""
 _RUN_INSTRUCTIONS = {
     standard.CO_SIMULATION: "steps of stepSize; the inputs of a step are those at its start or at its end",
-    standard.MODEL_EXCHANGE: f"a solver with {SOLVER_TOLERANCE_RATIO:g} times the tolerance of the "
+    standard.MODEL_EXCHANGE: f"a solver with {SOLVER_OVER_EXPERIMENT_TOLERANCE:g} times the tolerance of the "
     "experiment as its own; a completed integrator step at each row of inputs and results",
 }
 """{interface type: how an experiment is run}."""
@@ -231,8 +231,8 @@ def _format_experiment_text(
         own=__version__,
         counts="\n".join(f"{count:4d} {purpose}" for purpose, count in counts.items() if count),
         tolerance=REFERENCE_TOLERANCE,
-        solver=SOLVER_TOLERANCE_RATIO * REFERENCE_TOLERANCE,
-        floor=MIN_SCALE_RATIO,
+        solver=SOLVER_OVER_EXPERIMENT_TOLERANCE * REFERENCE_TOLERANCE,
+        floor=MIN_SCALE_OVER_NOMINAL,
         page="documentation/index.html" if is_native else "modelDescription.xml",
         file=file_stem,
     )

@@ -28,8 +28,8 @@ SCALES_TYPE = "org.jointfmu.scales"
 """Type of the annotation that gives for each output the scale to which its tolerance is relative."""
 EXPERIMENT_PURPOSES = ("smoke-test", "validation", "uncertainty-analysis")
 """Purposes of experiments; the first is the default of a manifest."""
-MIN_SCALE_RATIO = 1e-6
+MIN_SCALE_OVER_NOMINAL = 1e-6
 """Smallest scale of an output over its nominal value [1]: smaller values are dominated by round-off."""
-SOLVER_TOLERANCE_RATIO = 1e-3
+SOLVER_OVER_EXPERIMENT_TOLERANCE = 1e-3
 """Relative tolerance of the solver over the tolerance of the experiment [1]: solver errors accumulate, and a
 large value can be small after an event."""

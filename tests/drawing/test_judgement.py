@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 from jointfmu_tools import cli
-from jointfmu_tools.common.judgement import MAX_STIFFNESS_RATIO, assess_law_stiffness, find_rms_height
+from jointfmu_tools.common.judgement import MAX_STIFFNESS_OVER_ESTIMATE, assess_law_stiffness, find_rms_height
 from jointfmu_tools.common.pressure import find_nominal_pressure_model, judge_joint_stiffness
 from jointfmu_tools.fem.convergence import check_bolt_symmetry
 from jointfmu_tools.inputs.drawing.tables import read_threads
@@ -53,7 +53,10 @@ def test_a_height_that_is_no_roughness():
 def test_a_factor_of_three_either_way(side):
     p = 1e6
     k = evaluate_at_pressure(BOLTED.values, p)["K_N"] / BOLTED.values.A_0
-    for factor, doubtful in ((0.99 * MAX_STIFFNESS_RATIO, False), (1.01 * MAX_STIFFNESS_RATIO, True)):
+    for factor, doubtful in (
+        (0.99 * MAX_STIFFNESS_OVER_ESTIMATE, False),
+        (1.01 * MAX_STIFFNESS_OVER_ESTIMATE, True),
+    ):
         h = factor**side * p / (PERSSON_GAMMA * k)
         found = assess_law_stiffness(BOLTED.values, [p], h)
         assert found.stiffness_comparison.ratio == pytest.approx([factor**side], rel=1e-9)

@@ -10,7 +10,7 @@ from jointfmu_tools import cli
 from jointfmu_tools.exchange.export import keywords, tables, writing
 from jointfmu_tools.exchange.export.placing import SI_UNIT_SET, UNIT_SETS
 from jointfmu_tools.joints.bolted_joint.export import (
-    MAX_CONTACT_FORCE_RATIO,
+    MAX_CONTACT_OVER_TIGHTENING_FORCE,
     TightenedState,
     tabulate_normal_force,
 )
@@ -92,7 +92,7 @@ def test_pull_table_is_the_joints_force(bolted):
         assert k[i] == pytest.approx(state["K_zz"], rel=1e-9, abs=1.0)
     assert force[-1] == force[-2] == pytest.approx(72e3, rel=1e-12)
     assert force[0] == pytest.approx(
-        -(MAX_CONTACT_FORCE_RATIO - 1.0) * 72e3, rel=1e-3
+        -(MAX_CONTACT_OVER_TIGHTENING_FORCE - 1.0) * 72e3, rel=1e-3
     )  # its end is interpolated
     for x in np.linspace(s[0], s[-2], 101):
         exact = -bolted.evaluate(9e3, 500.0, (0.0, 0.0, x), (0.0, 0.0, 0.0))["f_z"]

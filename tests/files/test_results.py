@@ -6,7 +6,7 @@ import sys
 import numpy as np
 import pytest
 from clients import needs
-from jointfmu_fmu_src.native.compiled.compiled_models import get_kernel_result
+from jointfmu_fmu_src.native.compiled.compiled_models import get_stored_result
 from surroundings import environment
 
 from jointfmu.files import results
@@ -66,7 +66,7 @@ def test_points_and_patches_of_another_process_have_the_same_bits(tmp_path, ente
 def test_an_unsafe_cache_is_not_read(tmp_path, enter):
     cache = tmp_path / "cache"
     enter(environment(JOINTFMU_CACHE=str(cache)))
-    assert get_kernel_result("one", lambda: b"first") == b"first"
-    assert get_kernel_result("one", lambda: b"second") == b"first"
+    assert get_stored_result("one", lambda: b"first") == b"first"
+    assert get_stored_result("one", lambda: b"second") == b"first"
     cache.chmod(0o777)
-    assert get_kernel_result("one", lambda: b"second") == b"second"
+    assert get_stored_result("one", lambda: b"second") == b"second"

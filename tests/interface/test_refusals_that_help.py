@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from conftest import refused_line
 from jointfmu_tools.api.law import law as make_law
-from jointfmu_tools.run.ramps.loops import MAX_AMPLITUDE_RATIO, _check_amplitudes
+from jointfmu_tools.run.ramps.loops import MAX_AMPLITUDE_OVER_NOMINAL, _check_amplitudes
 
 import jointfmu
 from jointfmu.contact.laws import LAWS
@@ -93,7 +93,7 @@ class Description:
 
 
 def test_a_loop_of_a_metre_is_asked_about():
-    _check_amplitudes(Description, "s_rel_x", [1e-6, MAX_AMPLITUDE_RATIO * 1e-6])
+    _check_amplitudes(Description, "s_rel_x", [1e-6, MAX_AMPLITUDE_OVER_NOMINAL * 1e-6])
     with pytest.raises(ValueError, match=r"loop = 1 m of s_rel_x is outside \(0, 0.01\] m: values are in SI"):
         _check_amplitudes(Description, "s_rel_x", [1e-6, 1.0])
 

@@ -13,7 +13,7 @@ from scipy.integrate import quad
 from jointfmu.contact.interface import evaluate_at_largest_spot, solve_largest_spot, stiffness_curve
 from jointfmu.joints.harmonic_drive.spring import torque_curve
 from jointfmu.mechanics.curve import (
-    CLOSING_AREA_RATIO,
+    CLOSING_END_OVER_PLASTIC_SPOT_AREA,
     MAX_ERROR,
     Curve,
     assemble_curve,
@@ -322,9 +322,9 @@ def test_stiffness_is_the_laws(law):
 @given(data=st.data())
 def test_any_law_gives_a_monotone_table_or_is_refused(kind, data):
     law = data.draw(RANDOM[kind])
-    if law.spot_distribution().stiffness_onset_log_area + np.log(CLOSING_AREA_RATIO) >= solve_largest_spot(
-        law, law.hardness
-    ):
+    if law.spot_distribution().stiffness_onset_log_area + np.log(
+        CLOSING_END_OVER_PLASTIC_SPOT_AREA
+    ) >= solve_largest_spot(law, law.hardness):
         with pytest.raises(ValueError, match="plastic"):
             tabulate_approach(law)
         return
@@ -349,7 +349,8 @@ def test_closing_begins_at_nothing_and_joins_smoothly(law):
     assert curve.stiffness_slope_end[i - 1] == pytest.approx(curve.stiffness_slope_start[i], rel=1e-12)
     spots = law.spot_distribution()
     state = evaluate_at_largest_spot(
-        law, spots.reference_area * np.exp(spots.stiffness_onset_log_area) * CLOSING_AREA_RATIO
+        law,
+        spots.reference_area * np.exp(spots.stiffness_onset_log_area) * CLOSING_END_OVER_PLASTIC_SPOT_AREA,
     )
     assert p == pytest.approx(float(state["pressure"]), rel=1e-12)  # round-off of exp and log
     slope = stiffness_curve(law, p)[1]

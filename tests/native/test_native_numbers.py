@@ -40,8 +40,11 @@ def pairs(*given: ModuleConstants) -> list[tuple[ModuleType, str]]:
 TABLES = pairs(REAL_CONSTANT_NAMES, INTEGER_CONSTANT_NAMES)
 EVERY = {
     DRIVE: (*TABLES, *pairs(drive_native.REAL_CONSTANT_NAMES), (hysteresis, "MAX_LIMIT_ITERATIONS")),
-    GEAR: (*TABLES, (curve, "CLOSING_AREA_RATIO")),
-    BOLTED: tuple((equilibrium, name) for name in ("MAX_ENERGY_SLOPE_RATIO", "MIN_LENGTH_RATIO")),
+    GEAR: (*TABLES, (curve, "CLOSING_END_OVER_PLASTIC_SPOT_AREA")),
+    BOLTED: tuple(
+        (equilibrium, name)
+        for name in ("MAX_FINAL_OVER_INITIAL_ENERGY_SLOPE", "MIN_OVER_PREVIOUS_CORRECTION_LENGTH")
+    ),
 }
 
 

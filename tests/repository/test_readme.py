@@ -183,10 +183,13 @@ def predicted(count):
 
 def test_counts_are_those_of_the_comparison(rows):
     found = validation.count_points(rows)
-    n, lost = found.roles, sum(found.guessed.values()) - sum(found.nearer.values())
+    n, lost = (
+        found.count_by_role,
+        sum(found.guessed_count_by_role.values()) - sum(found.nearer_count_by_role.values()),
+    )
     for said in (
-        f"{found.numbers} numbers are compared, {found.printed} printed in the papers and {found.derived} "
-        f"computed from printed ones, and {n['claim']} claims",
+        f"{found.number_count} numbers are compared, {found.printed_count} printed in the papers and "
+        f"{found.derived_count} computed from printed ones, and {n['claim']} claims",
         f"{n['calibration']} were used to calibrate, {n['circular']} are met by construction, "
         f"{n['constant']} are constants, {n['self-check']} self-checks "
         f"and {n['contradiction']} a contradiction",
@@ -222,9 +225,13 @@ def test_the_start_says_how_far_it_holds(rows):
     assert here is not None
     assert here.start() < start.index("![")
     found = validation.count_points(rows)
-    said = f"Of the {found.numbers} numbers compared with the papers {predicted(found.roles['prediction'])}: "
+    share = predicted(found.count_by_role["prediction"])
+    said = f"Of the {found.number_count} numbers compared with the papers {share}: "
     assert said in here[1]
-    assert f"of the {found.numbers} numbers compared {predicted(found.roles['prediction'])};" in trust
+    assert (
+        f"of the {found.number_count} numbers compared {predicted(found.count_by_role['prediction'])};"
+        in trust
+    )
     assert re.search(r"\| \[Validity\]\(validity\.md\)", start.partition("## Where to go")[2])
 
 

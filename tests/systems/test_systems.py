@@ -38,7 +38,7 @@ from jointfmu_fmu_src.partners.laws import (
 from jointfmu_fmu_src.ssv import REAL_ELEMENT
 from jointfmu_tools import cli
 from jointfmu_tools.inputs.fitting import decay
-from jointfmu_tools.joints.harmonic_drive.job import VIBRATION_TORQUE_RATIOS
+from jointfmu_tools.joints.harmonic_drive.job import VIBRATION_TORQUES_OVER_RATED
 from jointfmu_tools.pages.report.systems import wind_up_and_tip_error
 from jointfmu_tools.systems import decays, ringing, ssp
 from jointfmu_tools.systems.cosimulation import simulate_system as simulate_system
@@ -1087,7 +1087,7 @@ def test_ring_takes_a_joint_and_a_body(built: Path, capsys: pytest.CaptureFixtur
     assert cli.main(["ring", "robot_joint", *folder, "--inertia", "0.2"]) == 0
     found = json.loads(capsys.readouterr().out)
     assert [row["load"] for row in found["rows"]] == [
-        x * DRIVE.joint.rated_torque for x in VIBRATION_TORQUE_RATIOS
+        x * DRIVE.joint.rated_torque for x in VIBRATION_TORQUES_OVER_RATED
     ]
     first = found["rows"][0]
     assert first["expected_frequency"] == pytest.approx(math.sqrt(working_point(0.0)[1] / 0.2) / math.tau)

@@ -2,9 +2,6 @@
 
 The `__init__.py` of the folder names the modules (`JointToolModules`). `import jointfmu_tools` reads these
 names; a module is imported when its tool asks for it.
-
-The `__init__.py` of the folder names the modules (`JointToolModules`). `import jointfmu_tools` reads these
-names; a module is imported when its tool asks for it.
 """
 
 from collections.abc import Sequence

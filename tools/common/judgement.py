@@ -21,7 +21,7 @@ from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array, Number
 
-MAX_STIFFNESS_RATIO = 3.0
+MAX_STIFFNESS_OVER_ESTIMATE = 3.0
 """Factor [1] above or below the estimate p/(GAMMA h) from roughness that makes a stiffness doubtful."""
 
 
@@ -45,8 +45,12 @@ class StiffnessComparison:
 
     @property
     def is_doubtful(self) -> bool:
-        """Whether at any pressure the ratio is above MAX_STIFFNESS_RATIO or below 1/MAX_STIFFNESS_RATIO."""
-        return bool(np.any((self.ratio > MAX_STIFFNESS_RATIO) | (self.ratio < 1.0 / MAX_STIFFNESS_RATIO)))
+        """Whether the ratio or its inverse exceeds MAX_STIFFNESS_OVER_ESTIMATE at any pressure."""
+        return bool(
+            np.any(
+                (self.ratio > MAX_STIFFNESS_OVER_ESTIMATE) | (self.ratio < 1.0 / MAX_STIFFNESS_OVER_ESTIMATE)
+            )
+        )
 
     def __str__(self) -> str:
         at = f"at {_format_range(self.pressure / 1e6)} MPa, h = {1e6 * self.rms_height:.3g} um"
@@ -142,7 +146,8 @@ def assess_law_stiffness(
         warnings.append(
             f"stiffness by the law: {_format_range(comparison.ratio)} times the roughness estimate K/A_0 = "
             f"p/({PERSSON_GAMMA:g} h) with h = {1e6 * comparison.rms_height:.3g} um, allowed is a factor of "
-            f"{MAX_STIFFNESS_RATIO:g}: measure the joint, or use the roughness estimate (docs/validity.md)"
+            f"{MAX_STIFFNESS_OVER_ESTIMATE:g}: measure the joint, or use the roughness estimate "
+            "(docs/validity.md)"
         )
     return Plausibility(comparison, tuple(warnings))
 

@@ -15,8 +15,6 @@ from jointfmu.quantity.units import conversion_factor, display_unit
 STIFFNESS_DISPLAY_UNITS = {"N.m/rad": "N.m/rad", "N/m": "N/um"}
 """Display units of stiffnesses on all pages: {SI unit: display unit}. Large stiffnesses have the prefix kilo.
 
-Other display units depend on the value.
-
 Other display units depend on the value."""
 _MIN_KILO_VALUE = 1e4
 """Value in a display unit of stiffness with the prefix kilo from here on: 13.3 kN/um, not 1.33e+04 N/um."""

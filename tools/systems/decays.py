@@ -22,7 +22,7 @@ PERIOD_COUNT = 60
 """Number of periods of a simulated decay [1]."""
 FINAL_PERIODS = 10
 """Number of last periods [1], whose mean is the final position; friction shifts it from the working point."""
-MAX_HALF_CYCLE_DECREMENT_RATIO = 2.0
+MAX_HALF_CYCLE_DECREMENT_OVER_DAMPING_RATIO = 2.0
 """Upper bound of the half-cycle decrement over the damping ratio [1].
 
 The half-cycle decrement is the logarithm of the amplitude at the start of a half cycle over the mean
@@ -34,7 +34,7 @@ DAMPING_TOLERANCE = 2e-2
 
 The damping is not compared in the first window, whose two periods take half of the amplitude.
 """
-MIN_AMPLITUDE_RATIO = 0.01
+MIN_OVER_INITIAL_AMPLITUDE = 0.01
 """Amplitude over the initial amplitude of a decay [1], below which the decay is not evaluated."""
 
 
@@ -139,9 +139,11 @@ def _simulate_decay(
         messages = tuple(dict.fromkeys(slave.messages + moving.messages))
     time = np.asarray(step * np.arange(signal.size), dtype=np.float64)
     points = decay.analyse_decay(time, signal, f"load = {load:g}: ")
-    is_resolved = points.amplitude > MIN_AMPLITUDE_RATIO * initial_deflection
+    is_resolved = points.amplitude > MIN_OVER_INITIAL_AMPLITUDE * initial_deflection
     amplitude = points.amplitude[is_resolved]
-    loop_amplitudes = amplitude * np.exp(MAX_HALF_CYCLE_DECREMENT_RATIO * points.damping_ratio[is_resolved])
+    loop_amplitudes = amplitude * np.exp(
+        MAX_HALF_CYCLE_DECREMENT_OVER_DAMPING_RATIO * points.damping_ratio[is_resolved]
+    )
     settled = rest._replace(
         position=rest.position + float(np.mean(signal[-FINAL_PERIODS * STEPS_PER_PERIOD :]))
     )

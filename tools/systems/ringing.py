@@ -29,7 +29,7 @@ DAMPING_TOLERANCE = 1e-2
 """Relative tolerance [1] of the damping ratio by the decrement against that of the joint."""
 FREQUENCY_CURVE_POINT_COUNT = 41
 """Number of points of a curve over the load [1]."""
-MIN_DEFLECTION_RATIO = 1e-10
+MIN_INITIAL_OVER_REST_DEFLECTION = 1e-10
 """Smallest initial deflection of a vibration over the deflection of the joint at its working point [1].
 
 Round-off of the vibration is then 1e-6 of its amplitude."""
@@ -312,7 +312,10 @@ def _simulate_vibration(
     """Simulate the free vibration at one load, with given parameters of the joint."""
     body, path = joint.vibration_test, folder / f"{joint.fmu_name}.fmu"
     rest, partner = body.find_working_point(path, load, parameters), PARTNERS[body.body_model]
-    initial, smallest = body.release_force / rest.stiffness, MIN_DEFLECTION_RATIO * abs(rest.position)
+    initial, smallest = (
+        body.release_force / rest.stiffness,
+        MIN_INITIAL_OVER_REST_DEFLECTION * abs(rest.position),
+    )
     if not initial > smallest:
         raise ValueError(
             f"load = {load:g}: too large, its deflection of {rest.position:g} hides a first one of "

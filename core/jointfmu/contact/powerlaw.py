@@ -125,9 +125,11 @@ class SmoothTerm:
         )
 
     def integrate_over_spots(self, size_exponent: Number, largest_log_area: Number) -> Number:
-        def integrand(t: Number) -> Number:
+        def integrand(log_area: Number) -> Number:
             """Quantity of a spot times exp(-m t), the integrand over log-areas t."""
-            return self.spot_function(np.maximum(t, self.lower_log_area)) * np.exp(-size_exponent * t)
+            return self.spot_function(np.maximum(log_area, self.lower_log_area)) * np.exp(
+                -size_exponent * log_area
+            )
 
         if (
             isinstance(largest_log_area, np.ndarray)
@@ -176,11 +178,11 @@ class SlipTerm:
         )
         upper = np.maximum(clip_regime_bound(self.upper_log_area, largest_log_area), lower)
 
-        def integrand(r: Number) -> Number:
+        def integrand(cube_root: Number) -> Number:
             """Stiffness of a spot times exp(-m t), after the substitution t = t_slip + r^3."""
-            t = onset + r**3
-            stick = np.maximum(-np.expm1(-self.slip_exponent * r**3), 0.0) ** (1.0 / 3.0)
-            return 3.0 * r**2 * stick * np.exp((self.exponent - size_exponent) * t)
+            t = onset + cube_root**3
+            stick = np.maximum(-np.expm1(-self.slip_exponent * cube_root**3), 0.0) ** (1.0 / 3.0)
+            return 3.0 * cube_root**2 * stick * np.exp((self.exponent - size_exponent) * t)
 
         start = np.maximum(lower - onset, 0.0) ** (1.0 / 3.0)
         end = np.maximum(upper - onset, 0.0) ** (1.0 / 3.0)
@@ -191,8 +193,6 @@ def clip_regime_bound(
     regime_bound: Number, largest_log_area: Number, value_if_infinite: Number = None
 ) -> Number:
     """Integration limit over the log-areas of spots: the bound of a regime, at most u of the largest spot.
-
-    `value_if_infinite` replaces a bound None (infinite).
 
     `value_if_infinite` replaces a bound None (infinite).
     """

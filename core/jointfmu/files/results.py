@@ -2,8 +2,6 @@
 
 The package `jointfmu` (kernel: laws and joints without tools) stores none itself. The tools set a store when
 they are imported; a python FMU has none.
-
-The kernel keeps none itself. The tools set a store when they are imported; a python FMU has none.
 """
 
 from collections.abc import Callable, Sequence

@@ -42,7 +42,7 @@ class TabulatedJoint(Protocol):
         """Table of load over displacement, from which the outputs are interpolated."""
 
 
-MINIMUM_MARGIN_RATIO = 1e-5
+INPUT_MARGIN_OVER_NOMINAL = 1e-5
 """Margin below the minimum of an input over its nominal value [1]. Solvers form derivatives with steps of
 1.5e-8 to 6e-6 of a value: the square root and the cubic root of the precision of doubles."""
 
@@ -71,7 +71,7 @@ class Variable:
     @property
     def minimum_margin(self) -> float:
         """Tolerance [unit of the variable]: an input below `minimum` by at most this counts as `minimum`."""
-        return MINIMUM_MARGIN_RATIO * self.nominal if math.isfinite(self.minimum) else 0.0
+        return INPUT_MARGIN_OVER_NOMINAL * self.nominal if math.isfinite(self.minimum) else 0.0
 
     def round_to_minimum(self, value: float) -> float:
         """Value of an input: `minimum`, if it is below by at most `minimum_margin`."""

@@ -27,11 +27,11 @@ MAX_ERROR = 1e-8
 """Largest allowed relative interpolation error of load and stiffness in a table [1]."""
 MAX_TABLE_NODES = 2600
 """Largest number of nodes of a table [1], limited by the memory of an FMU instance."""
-MAX_REFINEMENT = 16
+MAX_STEP_COUNT_FACTOR = 16
 """Largest number of steps of a table over its initial number [1]; ratios 1, 2, 4, ... are tried."""
 MIN_STEPS_PER_LOG_AREA = 12
 """Initial number of steps of the approach curve per unit of log-area [1], doubled until it is accurate."""
-MIN_SPLINE_STEPS_RATIO = 2
+MIN_STEP_FACTOR_BETWEEN_KINKS = 2
 """Smallest number of steps between two kinks of a law, over the number per unit of log-area [1]."""
 CLOSING_STEPS = 48
 """Number of steps of the table while the contact closes [1]: from first contact to some elastic spots."""
@@ -218,12 +218,12 @@ def refine_curve(tabulate_curve: Callable[[int], Curve], initial_step_count: int
     """Refine a table until its error is at most MAX_ERROR.
 
     tabulate_curve     : function, number of steps -> table
-    initial_step_count : initial number of steps, doubled up to MAX_REFINEMENT times as many
+    initial_step_count : initial number of steps, doubled up to MAX_STEP_COUNT_FACTOR times as many
 
     Raises RuntimeError if the table then is still inaccurate, or has more than MAX_TABLE_NODES nodes.
     """
     factor = 1
-    while factor <= MAX_REFINEMENT:
+    while factor <= MAX_STEP_COUNT_FACTOR:
         curve = tabulate_curve(initial_step_count * factor)
         factor *= 2
         if curve.load.size > MAX_TABLE_NODES:
@@ -250,44 +250,58 @@ def _join_curve_pieces(curve_pieces: list[tuple[Array, Array, Array, Array]]) ->
     return Curve(x, y, s, start, end)
 
 
-CLOSING_AREA_RATIO = 20.0
+CLOSING_END_OVER_PLASTIC_SPOT_AREA = 20.0
 """Area of the largest spot over that of the largest plastic spot [1] at the end of the closing."""
 
 
 def closing_pressure(
-    p: Number, k: Number, d2p: Number, closing_fraction: Number
+    p: Number, k: Number, d2p: Number, displacement_over_closing_length: Number
 ) -> tuple[Number, Number, Number, Number]:
     """Pressure over approach while the contact closes: from first contact (p = 0, k = 0) to a point (p, k).
 
-    p, k, d2p        : pressure [Pa], stiffness [N/m3] and its derivative [N/m4] at the end of the closing
-    closing_fraction : z (...) [1] displacement from first contact over the length of the closing, 0 to 1
+    p, k, d2p : pressure [Pa], stiffness [N/m3] and its derivative [N/m4] at the end of the closing
+    displacement_over_closing_length : z (...) [1] displacement from first contact over the length of the
+        closing, 0 to 1
 
     Returns displacement from the end of the closing [m], pressure, stiffness and its derivative at z.
 
     Interface laws have zero stiffness while all spots are plastic, at a finite pressure. The approach, the
     integral of dp/k, would start at minus infinity. So the law is used only above the point where the largest
-    spot is CLOSING_AREA_RATIO times the largest plastic spot. Below, the pressure is p z^3 (a + b z + c z^2)
-    over a length n p/k, twice continuously differentiable at both ends. n is 4. If k grows with a power of p
-    below 0.75, this length would make the pressure negative; n is then the largest value that does not.
+    spot is CLOSING_END_OVER_PLASTIC_SPOT_AREA times the largest plastic spot. Below, the pressure is p z^3 (a
+    + b z + c z^2) over a length n p/k, twice continuously differentiable at both ends. n is 4. If k grows
+    with a power of p below 0.75, this length would make the pressure negative; n is then the largest value
+    that does not.
     """
     reach = closing_length_ratio(p, k, d2p)
     length = reach * p / k
     c = 0.5 * d2p * length**2 / p - 3.0 * reach + 6.0
     a, b = 4.0 - reach + c, reach - 3.0 - 2.0 * c
-    load = p * closing_fraction**3 * (a + b * closing_fraction + c * closing_fraction**2)
+    load = (
+        p
+        * displacement_over_closing_length**3
+        * (a + b * displacement_over_closing_length + c * displacement_over_closing_length**2)
+    )
     stiffness = (
         p
         / length
-        * closing_fraction**2
-        * (3.0 * a + 4.0 * b * closing_fraction + 5.0 * c * closing_fraction**2)
+        * displacement_over_closing_length**2
+        * (
+            3.0 * a
+            + 4.0 * b * displacement_over_closing_length
+            + 5.0 * c * displacement_over_closing_length**2
+        )
     )
     slope = (
         p
         / length**2
-        * closing_fraction
-        * (6.0 * a + 12.0 * b * closing_fraction + 20.0 * c * closing_fraction**2)
+        * displacement_over_closing_length
+        * (
+            6.0 * a
+            + 12.0 * b * displacement_over_closing_length
+            + 20.0 * c * displacement_over_closing_length**2
+        )
     )
-    return (closing_fraction - 1.0) * length, load, stiffness, slope
+    return (displacement_over_closing_length - 1.0) * length, load, stiffness, slope
 
 
 def closing_length_ratio(p: Number, k: Number, d2p: Number) -> Number:
@@ -309,7 +323,7 @@ def tabulate_approach(law: InterfaceLaw) -> Curve:
     RuntimeError : the table does not reach the accuracy, see `refine_curve`
     """
     spots, area = get_checked_spot_distribution(law), law.A_0
-    first = float(spots.stiffness_onset_log_area + np.log(CLOSING_AREA_RATIO))
+    first = float(spots.stiffness_onset_log_area + np.log(CLOSING_END_OVER_PLASTIC_SPOT_AREA))
     last = float(solve_largest_spot(law, law.max_pressure))
     if not last > first:
         p = float(spots.sum_over_spots("load", first)) / area
@@ -340,7 +354,9 @@ def _tabulate_between_log_areas(
     ]
     pieces, offset = [], 0.0
     for start, end in pairwise(ends):
-        least = MIN_SPLINE_STEPS_RATIO * steps_per_log_area if start >= spot_distribution.first_kink else 2
+        least = (
+            MIN_STEP_FACTOR_BETWEEN_KINKS * steps_per_log_area if start >= spot_distribution.first_kink else 2
+        )
         n = max(2 * int(np.ceil(0.5 * steps_per_log_area * (end - start))), least)
         u = np.linspace(start, end, n + 1)
         half = 0.5 * (u[1] - u[0])

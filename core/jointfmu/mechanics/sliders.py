@@ -24,11 +24,11 @@ from .curve import Curve
 from .footprint.reproducible import rank_descending, round_to_digits
 from .jenkins import ReturnMapping, SliderUpdate, Vector, compliance, return_map
 
-SMALL_CHANGE_RATIO = 1e-3
+SMALL_APPROACH_CHANGE_OVER_INTERVAL = 1e-3
 """Change of the approach over the height interval of a slider [1], below which differences would cancel.
 
 Below, the mean stiffness is computed from the derivatives at both ends (fourth order)."""
-SMALL_CYCLE_RATIO = 3e-2
+SMALL_CYCLE_FORCE_OVER_LOAD = 3e-2
 """Stiffness times displacement over the load [1] below which the energies of a cycle are computed from
 derivatives of the curve: differences of its loads would cancel."""
 GOLDEN_RATIO_CONJUGATE = 0.5 * (np.sqrt(5.0) - 1.0)
@@ -41,7 +41,7 @@ HEIGHTS_BELOW_REFERENCE, SLIDER_HEIGHT_COUNT_ABOVE_REFERENCE = 10, 7
 """Number of slider heights below the reference approach, and between it and the end of the curve [1]."""
 FOUNDATION_SLIDERS = 2 * (HEIGHTS_BELOW_REFERENCE + SLIDER_HEIGHT_COUNT_ABOVE_REFERENCE + 2)
 """Number of sliders of a foundation with the heights of `slider_heights` [1]: two per height interval."""
-MIN_REFERENCE_RATIO, MAX_REFERENCE_RATIO, DEFAULT_REFERENCE_RATIO = 1e-5, 0.1, 1e-3
+MIN_REFERENCE_OVER_END_LOAD, MAX_REFERENCE_OVER_END_LOAD, DEFAULT_REFERENCE_OVER_END_LOAD = 1e-5, 0.1, 1e-3
 """Smallest and largest load at the reference approach, and load that replaces a smaller one, over the load at
 the end of the curve [1]."""
 
@@ -73,10 +73,10 @@ def slider_heights(
     offset_column = np.asarray(height_offset, dtype=np.float64)[..., None]
     end = pressure_curve.end_point[1]
     load = pressure_curve.derivatives(reference_approach, 0)[0]
-    touches = load > MIN_REFERENCE_RATIO * end
-    load = np.where(touches, np.minimum(load, MAX_REFERENCE_RATIO * end), DEFAULT_REFERENCE_RATIO * end)[
-        ..., None
-    ]
+    touches = load > MIN_REFERENCE_OVER_END_LOAD * end
+    load = np.where(
+        touches, np.minimum(load, MAX_REFERENCE_OVER_END_LOAD * end), DEFAULT_REFERENCE_OVER_END_LOAD * end
+    )[..., None]
     position_below = (np.arange(HEIGHTS_BELOW_REFERENCE)[::-1] + offset_column) / HEIGHTS_BELOW_REFERENCE
     position_above = (
         np.arange(SLIDER_HEIGHT_COUNT_ABOVE_REFERENCE) + offset_column
@@ -86,7 +86,7 @@ def slider_heights(
     lowest, highest = (np.full_like(load, x) for x in pressure_curve.displacement[[0, -1]])
     inner_heights = pressure_curve.inverse(np.concatenate([loads_below, load, loads_above], axis=-1))
     inner_heights[..., HEIGHTS_BELOW_REFERENCE] = np.where(
-        touches & (load[..., 0] < MAX_REFERENCE_RATIO * end),
+        touches & (load[..., 0] < MAX_REFERENCE_OVER_END_LOAD * end),
         reference_approach,
         inner_heights[..., HEIGHTS_BELOW_REFERENCE],
     )
@@ -137,7 +137,7 @@ def sum_slider_forces(slider_forces: Array) -> Array:
     return np.concatenate([np.sum(slider_forces, axis=-1), around_it[..., None]], axis=-1)
 
 
-FULL_STICK_RATIO = 1e-3
+FULL_STICK_OVER_GROSS_SLIP_DISPLACEMENT = 1e-3
 """Displacement over that of gross slip [1] below which a foundation counts as in full stick."""
 
 
@@ -209,7 +209,7 @@ class Foundation:
         retention, secant_stiffness = (np.asarray(factor)[..., None] for factor in rule)
         traction = retention * force + secant_stiffness * np.asarray(tangential_displacement)
         max_traction = (
-            FULL_STICK_RATIO
+            FULL_STICK_OVER_GROSS_SLIP_DISPLACEMENT
             * self.friction_coefficient
             / self.stiffness_ratio
             * stiffness_end
@@ -377,7 +377,7 @@ class Foundation:
             steps = np.repeat(np.diff(self.heights), 2, axis=-1)
             small = (
                 self._keeps_contact_state(displacement_increment)
-                & (np.abs(change) < SMALL_CHANGE_RATIO * steps)
+                & (np.abs(change) < SMALL_APPROACH_CHANGE_OVER_INTERVAL * steps)
             ) | (change == 0.0)
             limits = (end_properties.friction_limit - start_properties.friction_limit).reshape(
                 *end_properties.friction_limit.shape[:-1], -1, 2
@@ -543,7 +543,9 @@ def is_small_amplitude(
 
     At a load [Pa] and stiffness [Pa/m].
     """
-    return amplitude * (stiffness_ratio / friction_coefficient) * stiffness < SMALL_CYCLE_RATIO * load
+    return (
+        amplitude * (stiffness_ratio / friction_coefficient) * stiffness < SMALL_CYCLE_FORCE_OVER_LOAD * load
+    )
 
 
 def partial_contact(
@@ -586,8 +588,6 @@ def stick_retention(
     It is 1 if the approach grows. If it decreases, springs lift off and lose their force, and the fraction is
     below 1. Returns also the secant stiffness [Pa/m] for the tangential displacement, see
     `retention_and_stiffness`.
-
-    See `retention_and_stiffness`.
 
     stiffness_start, stiffness_end : [Pa/m] tangential stiffness
     is_unloading                   : whether the approach decreases

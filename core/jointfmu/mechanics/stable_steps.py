@@ -23,7 +23,7 @@ STABLE_STEP_OUTPUTS = (
     ),
 )
 """Names and meanings of the outputs of a joint with the largest stable steps."""
-_DAMPER_STEP_RATIO = 0.39
+_DAMPER_STEP_FACTOR = 0.39
 """Largest stable step times d/J [1], damper without spring, force one step late; fit to eigenvalues."""
 
 
@@ -43,15 +43,15 @@ def largest_stable_steps(stiffness: Number, damping: Number, mobility: Number) -
 
         2/((omega^2 + e^2)^(1/2) + e),    (e/(omega^4 + (e/b)^3 e))^(1/3)
 
-    with b = _DAMPER_STEP_RATIO. The first is exact. The second is within 5 % of the eigenvalue analysis up to
-    zeta = 4. For small damping they are 2/omega and (2 zeta)^(1/3)/omega. With a late force and no damping no
-    step is stable: the second is 0.
+    with b = _DAMPER_STEP_FACTOR. The first is exact. The second is within 5 % of the eigenvalue analysis up
+    to zeta = 4. For small damping they are 2/omega and (2 zeta)^(1/3)/omega. With a late force and no damping
+    no step is stable: the second is 0.
     """
     square = select(stiffness > 0.0, stiffness, 0.0 * stiffness) * mobility + (2.0 / MAX_STABLE_STEP) ** 2
     damping_rate = damping * mobility
     is_damped = damping_rate > 0.0
     safe_rate = select(is_damped, damping_rate, 1.0)
-    late_step = (safe_rate / (square**2 + safe_rate**4 / _DAMPER_STEP_RATIO**3)) ** (1.0 / 3.0)
+    late_step = (safe_rate / (square**2 + safe_rate**4 / _DAMPER_STEP_FACTOR**3)) ** (1.0 / 3.0)
     return 2.0 / (np.sqrt(square + damping_rate**2) + damping_rate), select(
         is_damped, late_step, select(mobility > 0.0, 0.0 * damping_rate, MAX_STABLE_STEP)
     )

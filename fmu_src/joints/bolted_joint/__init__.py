@@ -61,7 +61,7 @@ def _make_single_mode_bodies(bolt_count: int) -> dict[str, object]:
     return {f"bodies.{name}": value for name, value in values.items()}
 
 
-def _make_tables(joint: AnyBoltedJoint) -> Mapping[str, DataTable]:
+def _make_data_tables(joint: AnyBoltedJoint) -> Mapping[str, DataTable]:
     """{name: table} of numbers of a bolted joint that its C code reads as data.
 
     These are the contact points, friction patches, sliders, bolts and modes of the members.
@@ -140,9 +140,9 @@ def _distribution_rows(distribution: PressureDistribution) -> Any:
     )
 
 
-LOOP_PRELOAD_RATIO = 0.3
+LOOP_OVER_RAMP_END_PRELOAD = 0.3
 """Preload of the drawn friction loops over the preload at the end of the load ramp [1]."""
-LOOP_AMPLITUDE_RATIOS = (0.06, 0.12, 0.22, 0.4)
+LOOP_AMPLITUDES_OVER_SLIP_DISPLACEMENT = (0.06, 0.12, 0.22, 0.4)
 """Amplitudes of the drawn loops over the displacement at which a point with the mean approach slips [1]."""
 _CURVE_POINT_COUNT = 13
 """Number of points of a branch of the drawn friction loops [1]."""
@@ -154,7 +154,7 @@ def _draw_friction_loops(spring: Any, ramp_end_preload: float) -> list[chart.Pan
     ramp_end_preload : preload at the end of the load ramp [N]
     """
     left = spring.joint.embedding
-    preload = left + LOOP_PRELOAD_RATIO * (ramp_end_preload - left)
+    preload = left + LOOP_OVER_RAMP_END_PRELOAD * (ramp_end_preload - left)
     approach = spring.preloaded_approach(preload, 0.0)
     foundation, share = spring.friction_law.foundation(), spring.points.area_share
     mean = share @ np.maximum(approach - spring.curve.displacement[0], 0.0)
@@ -167,13 +167,13 @@ def _draw_friction_loops(spring: Any, ramp_end_preload: float) -> list[chart.Pan
         )
 
     lines = []
-    for part in reversed(LOOP_AMPLITUDE_RATIOS):
+    for part in reversed(LOOP_AMPLITUDES_OVER_SLIP_DISPLACEMENT):
         u = part * slips * np.linspace(-1.0, 1.0, 2 * _CURVE_POINT_COUNT + 1)
         top = virgin_force(u[-1:])
         back = top - 2.0 * virgin_force(0.5 * (u[-1] - u))
         shift, loop = np.concatenate([u, u[::-1]]), np.concatenate([back, -back])
         lines.append(chart.Series(f"amplitude {u[-1] * 1e6:.3g} µm", shift * 1e6, loop / 1e3))
-    u = LOOP_AMPLITUDE_RATIOS[-1] * slips * np.linspace(0.0, 1.0, _CURVE_POINT_COUNT)
+    u = LOOP_AMPLITUDES_OVER_SLIP_DISPLACEMENT[-1] * slips * np.linspace(0.0, 1.0, _CURVE_POINT_COUNT)
     lines.append(chart.Series("first shear", u * 1e6, virgin_force(u) / 1e3, dashed=True))
     size = slips * np.geomspace(0.01, 2.0, _CURVE_POINT_COUNT)
     sums = [sum_cycle_energies(foundation, share, approach, np.full(approach.size, a)) for a in size]
@@ -195,7 +195,7 @@ _ROTATION_FLANGES = zip("xyz", (-15.0, -45.0, -75.0), strict=True)
 FMU_PARTS = FmuParts(
     folder=Path(__file__).parent,
     native=make_native_definition_loader(__name__),
-    data_conversion=DataConversion(_convert_parameters, make_tables=_make_tables),
+    data_conversion=DataConversion(_convert_parameters, make_tables=_make_data_tables),
     chart_drawings={"BoltedJoint": {"loops": _draw_friction_loops}},
     ramp_panels={
         "BoltedJoint": (RampPanel("preload", ("K_zz", "K_xx")), RampPanel("preload", ("C_zz", "C_xx")))

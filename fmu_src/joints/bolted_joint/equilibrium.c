@@ -119,7 +119,7 @@ static void residual_jacobian(Equilibrium *e, const double *history)
     double deepest = -first; /* where the contact is closed */
     for (int j = 0; j < n_patches(); j++)
         deepest = fmax(deepest, contact->preload.patch_approach[j] - first);
-    traction_derivatives(e->assembly.friction, DIFFERENCE_STEP * deepest, history, e->derivatives);
+    traction_derivatives(e->assembly.friction, TRACTION_DIFFERENCE_STEP * deepest, history, e->derivatives);
     set_modal_opening(e);
     factorize_jacobian(e, MODES, true, &e->factors);
 }
@@ -234,7 +234,7 @@ static double residual(const Equilibrium *e, const double *q, const double *moda
     dense_add_rows(use_avx, (int)data.n_bolt_elongation, bolt_force,
                    (const double(*)[N_COLUMNS])bodies->elongation_jacobian, r);
     return RELATIVE_TOLERANCE *
-           (forces + stiffness * opening * CANCELLATION_RATIO + contact->area * contact->law.closing_end_pressure);
+           (forces + stiffness * opening * RIGID_OPENING_FORCE_FACTOR + contact->area * contact->law.closing_end_pressure);
 }
 
 /* Largest component [N], or a component that is not a number. */
@@ -317,10 +317,10 @@ static bool search_line(Equilibrium *e, LoadStep *step, const double *q, const d
             return false;
         *tolerance = residual(e, q, modal_coordinates, r);
         const double slope_1 = dense_dot(r, correction);
-        if (length == 0.0 || !(slope_1 > MAX_ENERGY_SLOPE_RATIO * fabs(slope_0)))
+        if (length == 0.0 || !(slope_1 > MAX_FINAL_OVER_INITIAL_ENERGY_SLOPE * fabs(slope_0)))
             return true;
         const double zero = slope_0 < 0.0 ? slope_0 / (slope_0 - slope_1) : 0.0; /* of the energy slope, if any */
-        length *= jacobian_is_current ? fmax(zero, MIN_LENGTH_RATIO) : 0.0;
+        length *= jacobian_is_current ? fmax(zero, MIN_OVER_PREVIOUS_CORRECTION_LENGTH) : 0.0;
         *is_full = false;
     }
     return true;
@@ -342,7 +342,7 @@ static NewtonResult solve_newton(Equilibrium *e, LoadStep *step, double step_fra
         const double norm = residual_norm(r);
         if (norm <= tolerance_factor * tolerance)
             return CONVERGED;
-        if (!(norm < JACOBIAN_REUSE_RATIO * last_norm)) {
+        if (!(norm < JACOBIAN_REUSE_RESIDUAL_DECREASE * last_norm)) {
             residual_jacobian(e, step->history);
             factors = &e->factors;
             corrections = 0;
@@ -350,7 +350,7 @@ static NewtonResult solve_newton(Equilibrium *e, LoadStep *step, double step_fra
         }
         /* Whether this correction is expected to end the load step: its trial then computes works, losses and
          * history, too, which saves an evaluation. Python has no such case. */
-        const bool is_last = step_fraction == 1.0 && n > 0 && norm < JACOBIAN_REUSE_RATIO * last_norm &&
+        const bool is_last = step_fraction == 1.0 && n > 0 && norm < JACOBIAN_REUSE_RESIDUAL_DECREASE * last_norm &&
                              norm * norm < last_norm * tolerance; /* by its order of convergence */
         double *correction = e->corrections[corrections];
         for (int k = 0; k < MODES; k++)

@@ -29,8 +29,8 @@ static void slider_heights(Foundation *f, double reference)
     const double end = f->curve->end.y;
     double y[2], *h = f->height;
     curve_evaluate(f->curve, reference, 0, y);
-    const bool touches = y[0] > MIN_REFERENCE_RATIO * end, given = touches && y[0] < MAX_REFERENCE_RATIO * end;
-    const double load = touches ? fmin(y[0], MAX_REFERENCE_RATIO * end) : DEFAULT_REFERENCE_RATIO * end,
+    const bool touches = y[0] > MIN_REFERENCE_OVER_END_LOAD * end, given = touches && y[0] < MAX_REFERENCE_OVER_END_LOAD * end;
+    const double load = touches ? fmin(y[0], MAX_REFERENCE_OVER_END_LOAD * end) : DEFAULT_REFERENCE_OVER_END_LOAD * end,
                  over = portable_log(end / load);
     *h++ = f->curve->start.x;
     for (int k = N_BELOW - 1; k >= 0; k--) {
@@ -194,7 +194,7 @@ static inline bool is_small_change(const Foundation *f, int i, const PatchState 
 {
     const double change = at->approach - from->approach;
     return change == 0.0 ||
-           (keeps_contact_state(i, from, at) && fabs(change) < SMALL_CHANGE_RATIO * (f->height[i + 1] - f->height[i]));
+           (keeps_contact_state(i, from, at) && fabs(change) < SMALL_APPROACH_CHANGE_OVER_INTERVAL * (f->height[i + 1] - f->height[i]));
 }
 
 /* State in the middle of an increment, found when it is first needed. */
@@ -627,7 +627,7 @@ bool full_stick_update(const Foundation *f, const PatchIncrement *path, const do
     const PatchState *from = path->start, *to = path->end;
     const double x[N_STICK_RETENTION] = {to->approach < from->approach, stick_stiffness(f, from),
                                          stick_stiffness(f, to)};
-    const double most = FULL_STICK_RATIO * f->mu / f->ratio * x[R_STIFFNESS_END] * (to->approach - f->height[0]);
+    const double most = FULL_STICK_OVER_GROSS_SLIP_DISPLACEMENT * f->mu / f->ratio * x[R_STIFFNESS_END] * (to->approach - f->height[0]);
     double rule[2], *t = update->traction;
     stick_retention(x, NULL, rule);
     *update = (SliderUpdate){.tangent = {x[R_STIFFNESS_END], 0.0, x[R_STIFFNESS_END], 0.0, 0.0, x[R_STIFFNESS_END]}};
@@ -952,7 +952,7 @@ static void slider_height_rates(const Foundation *f, double rate, double height[
     const double end = f->curve->end.y;
     double y[2];
     curve_evaluate(f->curve, f->onset_approach, 1, y);
-    const bool follow = y[0] > MIN_REFERENCE_RATIO * end && y[0] < MAX_REFERENCE_RATIO * end;
+    const bool follow = y[0] > MIN_REFERENCE_OVER_END_LOAD * end && y[0] < MAX_REFERENCE_OVER_END_LOAD * end;
     memset(height, 0, N_HEIGHTS * sizeof *height);
     /* loads in proportion below, in that of their logarithm above */
     for (int i = 1; i < N_HEIGHTS - 1 && follow; i++) {

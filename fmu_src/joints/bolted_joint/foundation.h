@@ -123,7 +123,7 @@ void foundation_traction_derivatives(const Foundation *f, const PatchIncrement *
                                      double *const trial_force[2], SliderWork *work, double derivatives[4][3]);
 /* Tangential stiffness in full stick. */
 double stick_stiffness(const Foundation *foundation, const PatchState *state);
-/* Update in full stick from a traction; false: it exceeds what FULL_STICK_RATIO allows. */
+/* Update in full stick from a traction; false: it exceeds what FULL_STICK_OVER_GROSS_SLIP_DISPLACEMENT allows. */
 bool full_stick_update(const Foundation *foundation, const PatchIncrement *path, const double traction[3],
                        SliderUpdate *update);
 /* Its rate, from rates of the increment, on the side to which `direction` points; true: the increment ends at a corner,

@@ -105,7 +105,7 @@ static inline void full_stick_force(const double *history, int j, double tractio
     traction[2] = force[FOUNDATION_SLIDERS + 1];
 }
 
-/* Update all patches in full stick; false: a patch moves more than FULL_STICK_RATIO allows. */
+/* Update all patches in full stick; false: a patch moves more than FULL_STICK_OVER_GROSS_SLIP_DISPLACEMENT allows. */
 static bool update_full_stick(Friction *friction, const Contact *contact, const double *history)
 {
     bool sticks = history[HISTORY_STATE] < (double)SLIP_1D;

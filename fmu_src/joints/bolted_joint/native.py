@@ -139,13 +139,13 @@ def _make_definitions(function_graph: FunctionGraph, model: Model) -> CDefinitio
     columns = ("SHARE", "POSITION_X", "POSITION_Y", "PRELOAD_SHAPE", "MOMENT_SHAPE", "RADIUS")
     counts |= {name: k for k, name in enumerate(columns)}
     names = (
-        "SMALL_CHANGE_RATIO",
-        "SMALL_CYCLE_RATIO",
-        "FULL_STICK_RATIO",
+        "SMALL_APPROACH_CHANGE_OVER_INTERVAL",
+        "SMALL_CYCLE_FORCE_OVER_LOAD",
+        "FULL_STICK_OVER_GROSS_SLIP_DISPLACEMENT",
         "UNIFORM_DEVIATION",
-        "MIN_REFERENCE_RATIO",
-        "MAX_REFERENCE_RATIO",
-        "DEFAULT_REFERENCE_RATIO",
+        "MIN_REFERENCE_OVER_END_LOAD",
+        "MAX_REFERENCE_OVER_END_LOAD",
+        "DEFAULT_REFERENCE_OVER_END_LOAD",
     )
     numbers = {name: float(getattr(sliders, name)) for name in names}
     numbers["SLIDER_AT_LIMIT"] = jenkins.AT_LIMIT_TOLERANCE
@@ -171,18 +171,18 @@ def _make_definitions(function_graph: FunctionGraph, model: Model) -> CDefinitio
         name: getattr(equilibrium, name)
         for name in (
             "RELATIVE_TOLERANCE",
-            "CANCELLATION_RATIO",
+            "RIGID_OPENING_FORCE_FACTOR",
             "INTERMEDIATE_TOLERANCE_FACTOR",
             "MIN_LOAD_STEP",
-            "MAX_ENERGY_SLOPE_RATIO",
-            "MIN_LENGTH_RATIO",
-            "JACOBIAN_REUSE_RATIO",
-            "DIFFERENCE_STEP",
+            "MAX_FINAL_OVER_INITIAL_ENERGY_SLOPE",
+            "MIN_OVER_PREVIOUS_CORRECTION_LENGTH",
+            "JACOBIAN_REUSE_RESIDUAL_DECREASE",
+            "TRACTION_DIFFERENCE_STEP",
         )
     }
     numbers |= {
-        "BOLT_LIFT_OFF_RATIO": bolts.LIFT_OFF_RATIO,
-        "BOLT_AT_LIFT_OFF": bolts.LIFT_OFF_STIFFNESS_FACTOR,
+        "BOLT_LIFT_OFF_RATIO": bolts.LIFT_OFF_FORCE_OVER_CLOSING_LOAD,
+        "BOLT_AT_LIFT_OFF": bolts.LIFT_OFF_OVER_FULL_STIFFNESS,
     }
     return CDefinitions(counts, numbers)
 

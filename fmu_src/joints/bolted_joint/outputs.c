@@ -192,7 +192,7 @@ enum {
 /* Repeats `is_small_amplitude` of the package. */
 static inline bool is_small_amplitude(const PatchState *state, double reach)
 {
-    return reach * state->y[1] < SMALL_CYCLE_RATIO * state->y[0];
+    return reach * state->y[1] < SMALL_CYCLE_FORCE_OVER_LOAD * state->y[0];
 }
 
 /* Load with four derivatives at the approach of a patch, and at that of the springs that slip last. */

@@ -57,7 +57,7 @@ def _convert_parameters(drive: DriveParameters) -> Mapping[str, Any]:
     return {name: value for name, value in values.items() if not name.startswith("table.")} | midline
 
 
-def _make_tables(drive: DriveParameters) -> Mapping[str, DataTable]:
+def _make_data_tables(drive: DriveParameters) -> Mapping[str, DataTable]:
     """Table "midline" of the nodes of a measured midline, as data of the C code; none for other drives."""
     if not isinstance(drive, TableDriveParameters):
         return EMPTY_TABLES
@@ -74,7 +74,7 @@ _LOCKED_FLANGE_MEMBERS = {"phi": ("phi_rel", "signal"), "tau": ("tau", "inflow")
 FMU_PARTS = FmuParts(
     folder=Path(__file__).parent,
     native=make_native_definition_loader(__name__),
-    data_conversion=DataConversion(_convert_parameters, _find_code_parameter_class, _make_tables),
+    data_conversion=DataConversion(_convert_parameters, _find_code_parameter_class, _make_data_tables),
     ramp_panels={
         "HarmonicDriveSpring": (RampPanel("phi_rel", ("tau",)), _STIFFNESS_PANEL),
         "HarmonicDriveCompliance": (RampPanel("tau", ("phi_rel",)), _STIFFNESS_PANEL),

@@ -91,7 +91,7 @@ static double initial_stiffness(const double *constants, const Curve *curve, dou
         return constants[HYSTERESIS_STIFFNESS];
     const double back =
         curve_inverse_safeguarded(curve, constants[RATED_TORQUE] - half_loop_torque) - 0.5 * constants[HYSTERESIS_LOSS];
-    return fmax(curve->start.stiffness, 2.0 * MIN_REVERSAL_RATIO * half_loop_torque / back);
+    return fmax(curve->start.stiffness, 2.0 * MIN_UNLOADING_OVER_REVERSAL_WIND_UP * half_loop_torque / back);
 }
 
 /* Set M_f and what follows from it. */

@@ -108,7 +108,7 @@ def _is_torque_input(model: Model) -> bool:
 
 REAL_CONSTANT_NAMES: ModuleConstants = {
     spring: ("MIN_STIFFNESS", "MIN_STIFFNESS_MARGIN"),
-    hysteresis: ("WIND_UP_TOLERANCE", "MIN_REVERSAL_RATIO", "LIMIT_TOLERANCE"),
+    hysteresis: ("WIND_UP_TOLERANCE", "MIN_UNLOADING_OVER_REVERSAL_WIND_UP", "LIMIT_TOLERANCE"),
     friction: ("PRIOR_ROTATION_TIME",),
 }
 INTEGER_CONSTANT_NAMES: ModuleConstants = {

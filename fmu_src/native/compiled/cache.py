@@ -1,8 +1,6 @@
 """Cache folder: compiled models of FMUs, stored results of long computations, cache of the compiler.
 
 Its files become part of FMUs, so only the user and root may have write access.
-
-Its files become part of FMUs, so only the user and root may have write access.
 """
 
 import os
@@ -39,7 +37,7 @@ def compiled_model_folder() -> Path:
     return cache_folder() / "parts"
 
 
-def kernel_result_folder() -> Path:
+def stored_result_folder() -> Path:
     """Cache folder of the stored results of long computations of the package `jointfmu`.
 
     These are reduced contact points and friction patches of bolted joints.
@@ -130,4 +128,4 @@ def clear_cache() -> None:
 
 def _cache_subfolders() -> tuple[Path, ...]:
     """Folders that jointfmu fills: compiled models, stored results, and the compiler's default cache."""
-    return compiled_model_folder(), kernel_result_folder(), cache_folder() / "zig"
+    return compiled_model_folder(), stored_result_folder(), cache_folder() / "zig"

@@ -27,7 +27,7 @@ from jointfmu.progress import defer_interrupt, set_status_text
 from ...folders import find_source_folder
 from ...joint_parts.data import ParameterSplit
 from ..data import PLACEHOLDER_NAME, make_placeholder
-from .cache import check_cache_access, compiled_model_folder, kernel_result_folder, make_cache_folder
+from .cache import check_cache_access, compiled_model_folder, make_cache_folder, stored_result_folder
 from .compiler import ZIG_TARGETS, compile_libraries, select_source_files
 
 SHIPPED_MODEL_FOLDER = Path(__file__).parent.with_name("parts")
@@ -98,7 +98,7 @@ def get_cached_result(dependency_text: str, model: Model, compute_result: Callab
     return result
 
 
-def get_kernel_result(key: str, compute_result: Callable[[], bytes]) -> bytes:
+def get_stored_result(key: str, compute_result: Callable[[], bytes]) -> bytes:
     """Get the stored result of a long computation of the package `jointfmu`, or compute and store it.
 
     A stored result is in the user's cache. It is used only if the sources of the package are unchanged.
@@ -108,7 +108,7 @@ def get_kernel_result(key: str, compute_result: Callable[[], bytes]) -> bytes:
     An unsafe or unwritable cache is not used. See `jointfmu.files.results`.
     """
     name = sha256(f"{key} {_digest_folders((Path(str(files('jointfmu'))),))}".encode()).hexdigest()[:32]
-    file = kernel_result_folder() / f"{name}{_RESULT_FILE_SUFFIX}"
+    file = stored_result_folder() / f"{name}{_RESULT_FILE_SUFFIX}"
     with suppress(ValueError, lzma.LZMAError):
         if content := _read_cache_file(file):
             return lzma.decompress(content)

@@ -14,8 +14,8 @@ from jointfmu_tools.inputs.fields.joint_parameters import insert_field, normalis
 from jointfmu_tools.inputs.fields.nodal_result import ContactField
 from jointfmu_tools.inputs.fields.reduction import RELATIVE_TOLERANCE, ROUNDING_BITS, reduce_field
 from jointfmu_tools.inputs.fields.sums import (
-    MAX_COMPRESSION_RATIO,
-    PRELOAD_RATIO_RANGE,
+    CASE_OVER_FIELD_PRELOAD_RANGE,
+    MAX_COMPRESSION_OVER_OPENING_MOTION,
     LoadCase,
     SumFunctions,
 )
@@ -86,12 +86,14 @@ def test_points_keep_the_sums(reduced):
     lowest = SumFunctions.from_joint(joint, PRELOAD, preload_pressure).pressure_curve.displacement[0]
     for _ in range(15):  # many in studies/fields_explanation.py
         load = LoadCase(
-            float(np.exp(rng.uniform(*np.log(PRELOAD_RATIO_RANGE)))),
+            float(np.exp(rng.uniform(*np.log(CASE_OVER_FIELD_PRELOAD_RANGE)))),
             found.max_tested_moment_ratio * rng.uniform(-1, 1),
             0.0,
         )
         start, _, peak = direct(joint, shape, load)
-        apart = rng.choice([0.0, rng.uniform(-MAX_COMPRESSION_RATIO, 1.0)]) * (start.max() - lowest)
+        apart = rng.choice([0.0, rng.uniform(-MAX_COMPRESSION_OVER_OPENING_MOTION, 1.0)]) * (
+            start.max() - lowest
+        )
         _, full, _ = direct(joint, shape, load._replace(opening_ratio=apart))
         _, few, same = direct(joint, found.reduced_distribution, load._replace(opening_ratio=apart))
         np.testing.assert_array_less(

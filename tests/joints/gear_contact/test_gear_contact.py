@@ -15,7 +15,7 @@ from scipy.integrate import quad
 
 from jointfmu.contact.interface import evaluate_at_pressure
 from jointfmu.joints.gear_contact.spring import GearContactParameters, GearContactSpring
-from jointfmu.mechanics.curve import CLOSING_AREA_RATIO, MAX_ERROR
+from jointfmu.mechanics.curve import CLOSING_END_OVER_PLASTIC_SPOT_AREA, MAX_ERROR
 from jointfmu.parameters import load_default, load_parameter_file
 from jointfmu.quantity import build_parameter_set, flatten_parameters
 
@@ -143,13 +143,15 @@ def test_zeta_is_the_exponent():
 
 @each
 def test_the_closing_is_short(spring):
-    """The closing ends where the area of the largest spot is CLOSING_AREA_RATIO times that of the largest
-    plastic one."""
+    """The closing ends where the area of the largest spot is CLOSING_END_OVER_PLASTIC_SPOT_AREA times
+    that of the largest plastic one."""
     force, _ = closing_end(spring)
     spots = spring.joint.spot_distribution()
     largest = float(evaluate_at_pressure(spring.joint, force / spring.joint.A_0)["largest_spot"])
     plastic = spots.reference_area * np.exp(spots.stiffness_onset_log_area)
-    assert largest == pytest.approx(CLOSING_AREA_RATIO * plastic, rel=1e-10)  # 1e-12 of the load, steep
+    assert largest == pytest.approx(
+        CLOSING_END_OVER_PLASTIC_SPOT_AREA * plastic, rel=1e-10
+    )  # 1e-12 of the load, steep
     assert force < spring.max_force
 
 

@@ -14,8 +14,8 @@ from jointfmu_tools.joints.harmonic_drive import catalogue
 
 import jointfmu
 from jointfmu.joints.harmonic_drive.prescribed_midline import (
-    DEFAULT_CORNER_HALF_WIDTH_RATIO,
-    MIN_CORNER_HALF_WIDTH_RATIO,
+    DEFAULT_CORNER_HALF_WIDTH_OVER_WIND_UP,
+    MIN_CORNER_HALF_WIDTH_OVER_WIND_UP,
 )
 
 REFERENCE = files("jointfmu_models") / "reference"
@@ -282,8 +282,8 @@ def test_without_corners_the_printed_angles_are_met():
     smooth, sharp = jointfmu.drive(DRIVE), jointfmu.drive(DRIVE, corner=0)
     row, T = sharp.values, np.array([14.0, 48.0, 87.0])
     # at a corner a smooth step of half-width c leaves 3/32 c of the jump in compliance: 1e-7 of the angle
-    np.testing.assert_allclose(sharp.wind_up(T), angle(row, T), rtol=0.1 * MIN_CORNER_HALF_WIDTH_RATIO)
-    assert abs(smooth.wind_up(14.0) / angle(row, 14.0) - 1.0) > 0.01 * DEFAULT_CORNER_HALF_WIDTH_RATIO
+    np.testing.assert_allclose(sharp.wind_up(T), angle(row, T), rtol=0.1 * MIN_CORNER_HALF_WIDTH_OVER_WIND_UP)
+    assert abs(smooth.wind_up(14.0) / angle(row, 14.0) - 1.0) > 0.01 * DEFAULT_CORNER_HALF_WIDTH_OVER_WIND_UP
     every = np.linspace(-90.0, 90.0, 1001)
     np.testing.assert_allclose(sharp.torque(sharp.wind_up(every)), every, rtol=1e-9, atol=1e-12)
     np.testing.assert_allclose(sharp.stiffness([1.0, 13.99, 14.01, 47.9, 48.1]), [31e3, 31e3, 5e4, 5e4, 57e3])
@@ -306,10 +306,12 @@ def test_all_flavours_have_the_kinks(tmp_path):
     for path in paths:
         found.append(jointfmu.run(path, {"tau": T})["phi_rel"])
         expected = angle(file.values_by_name, T)
-        np.testing.assert_allclose(found[-1], expected, rtol=0.1 * MIN_CORNER_HALF_WIDTH_RATIO, atol=1e-15)
+        np.testing.assert_allclose(
+            found[-1], expected, rtol=0.1 * MIN_CORNER_HALF_WIDTH_OVER_WIND_UP, atol=1e-15
+        )
         np.testing.assert_allclose(found[-1], found[0], rtol=1e-12)
     one = Fmu(tmp_path / "fmi2" / "HarmonicDriveCompliance.fmu").start(
-        {"corner": DEFAULT_CORNER_HALF_WIDTH_RATIO, "tau": 14.0}
+        {"corner": DEFAULT_CORNER_HALF_WIDTH_OVER_WIND_UP, "tau": 14.0}
     )
     assert one.get("phi_rel")["phi_rel"] == pytest.approx(jointfmu.drive(DRIVE).wind_up(14.0), rel=1e-9)
     one.free_instance()

@@ -63,7 +63,7 @@ def test_angles_are_kept(one):
     found = catalogue.fit_contact_pair_law(one)
     kept = np.array([one.T1, one.T2, one.rated])
     np.testing.assert_allclose(wind_up(found.parameters.values, kept), one.wind_up(kept), rtol=0.01)
-    assert found.parameters.values.max_torque == catalogue.MAX_TORQUE_RATIO * one.rated
+    assert found.parameters.values.max_torque == catalogue.TABLE_END_OVER_RATED_TORQUE * one.rated
 
 
 @pytest.mark.slow

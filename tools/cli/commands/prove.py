@@ -1,8 +1,6 @@
 """`jointfmu prove`: run the experiments stored in an FMU, and compare with their reference results.
 
 `jointfmu validate`: compare the laws with quadrature, and results with published numbers.
-
-`jointfmu validate`: compare the laws with quadrature, and results with published numbers.
 """
 
 import argparse

@@ -19,13 +19,13 @@ MAX_ROUND_OFF = 1e-9
 class JointStiffness:
     """Stiffness matrix of a complete joint: side 2 relative to side 1, about the centroid of the contact.
 
-    matrix         : symmetric K (6, 6) [N/m, N, N.m/rad] in the frame of the joint: force and moment that
-                     move side 2 at the centroid, over its relative displacement and rotation
-    node_positions : (2, 3) [m] of the nodes of side 1 and side 2 from the centroid, along the model's axes.
-                     Each node moves with the attachment of its side as a rigid body
+    stiffness_matrix : symmetric K (6, 6) [N/m, N, N.m/rad] in the frame of the joint: force and moment that
+                       move side 2 at the centroid, over its relative displacement and rotation
+    node_positions   : (2, 3) [m] of the nodes of side 1 and side 2 from the centroid, along the model's axes.
+                       Each node moves with the attachment of its side as a rigid body
     """
 
-    matrix: Array
+    stiffness_matrix: Array
     node_positions: Array
 
     @classmethod
@@ -38,8 +38,8 @@ class JointStiffness:
     @property
     def max_coupling(self) -> float:
         """Largest |K_ij|/sqrt(K_ii K_jj) [1] of two different directions."""
-        size = np.sqrt(np.diag(self.matrix))
-        return float(np.max(np.abs(self.matrix / np.outer(size, size) - np.eye(6))))
+        size = np.sqrt(np.diag(self.stiffness_matrix))
+        return float(np.max(np.abs(self.stiffness_matrix / np.outer(size, size) - np.eye(6))))
 
     def model_matrix(self, placement: Placement) -> Array:
         """Stiffness K (6, 6) about the centroid, along the model's axes and in its units."""
@@ -48,7 +48,7 @@ class JointStiffness:
         length = placement.units.convert(1.0, "m")
         exponent = np.repeat([-0.5, 0.5], 3)
         K = np.zeros((6, 6))
-        K[np.ix_(order, order)] = self.matrix * length ** np.add.outer(exponent, exponent)
+        K[np.ix_(order, order)] = self.stiffness_matrix * length ** np.add.outer(exponent, exponent)
         return K
 
     def node_matrix(self, placement: Placement) -> Array:
@@ -69,7 +69,7 @@ class JointStiffness:
         """{name: diagonal entry of K [N/m, N.m/rad] in the frame of the joint, about the centroid}."""
         return {
             f"K_{name if len(name) > 1 else 2 * name}": float(value)
-            for name, value in zip(DOF_NAMES, np.diag(self.matrix), strict=True)
+            for name, value in zip(DOF_NAMES, np.diag(self.stiffness_matrix), strict=True)
         }
 
 

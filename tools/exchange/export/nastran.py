@@ -62,15 +62,15 @@ def _format_grid(label: int, position: Array) -> Iterable[str]:
     yield from _large_card("GRID", label, "", *position)
 
 
-def _format_matrix(matrix: Array, first_label: int) -> Iterable[str]:
+def _format_matrix(stiffness_matrix: Array, first_label: int) -> Iterable[str]:
     """Format a symmetric matrix as DMIG columns of its lower triangle (IFO = 6, double precision TIN = 2)."""
     yield f"DMIG    {DMIG_NAME:<8}{0:<8}{6:<8}{2:<8}{0:<8}"
     for j in range(12):
-        rows = [i for i in range(j, 12) if matrix[i, j]]
+        rows = [i for i in range(j, 12) if stiffness_matrix[i, j]]
         if rows:
             yield f"{'DMIG*':<8}{DMIG_NAME:<16}{first_label + j // 6:<16}{j % 6 + 1:<16}"
         for i in rows:
-            value = f"{matrix[i, j]:.9E}".replace("E", "D")
+            value = f"{stiffness_matrix[i, j]:.9E}".replace("E", "D")
             yield f"{'*':<8}{first_label + i // 6:<16}{i % 6 + 1:<16}{value:<16}"
 
 

@@ -25,7 +25,7 @@ from .reduction import MAX_KEPT_NODES, Reduction, reduce_field
 
 FORCE_TOLERANCE = 0.01
 """Largest relative difference between the force of a pressure field and the total preload [1]."""
-MOMENT_RATIO_RANGE = (0.5, 1.5)
+PRESSURE_OVER_GIVEN_MOMENT_RANGE = (0.5, 1.5)
 """Allowed range of the moment of the pressure over the given moment [1]; bolt forces carry the rest."""
 _REPLACED_PARAMETER_PREFIXES = ("pattern.", "plate.", "field.", "bodies.", "sides")
 """Prefixes of the parameter names that a pressure field replaces.
@@ -147,8 +147,8 @@ def normalise_pressure_field(
     _check_same_nodes(contact_field, moment_field)
     added = scale * moment_field.pressure - mean * equal
     moment_ratio = area * float(share @ (added * position[:, 1])) / moment
-    if not MOMENT_RATIO_RANGE[0] <= moment_ratio <= MOMENT_RATIO_RANGE[1]:
-        low, high = MOMENT_RATIO_RANGE
+    if not PRESSURE_OVER_GIVEN_MOMENT_RANGE[0] <= moment_ratio <= PRESSURE_OVER_GIVEN_MOMENT_RANGE[1]:
+        low, high = PRESSURE_OVER_GIVEN_MOMENT_RANGE
         raise ValueError(
             f"the pressures of the second field balance {moment_ratio:.3g} of the moment of {moment:g} N.m, "
             f"allowed is {low:g} to {high:g}: check the sign: a positive moment raises the pressure at y > 0"

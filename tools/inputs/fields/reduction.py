@@ -25,7 +25,7 @@ from jointfmu.quantity import Array
 from .bolted_interface import BoltedInterface, PressureFunction
 from .nodal_result import NodeIndices
 from .sums import (
-    PRELOAD_RATIO_RANGE,
+    CASE_OVER_FIELD_PRELOAD_RANGE,
     RANDOM_SEED,
     LoadCase,
     LoadCaseSums,
@@ -37,7 +37,7 @@ from .sums import (
     random_load_cases,
 )
 
-GROUPS_PER_SUM = 2
+NODE_GROUPS_PER_INDEPENDENT_SUM = 2
 """Number of node groups in one step of the recombination, over the number of independent sums [1]."""
 
 
@@ -54,7 +54,9 @@ def recombine_weights(
     """
     selected, count = np.arange(len(function_values)), function_values.shape[1]
     while selected.size > count:
-        bounds = np.linspace(0, selected.size, min(GROUPS_PER_SUM * count, selected.size) + 1).astype(np.intp)
+        bounds = np.linspace(
+            0, selected.size, min(NODE_GROUPS_PER_INDEPENDENT_SUM * count, selected.size) + 1
+        ).astype(np.intp)
         sums = [node_weights[a:b] @ function_values[a:b] for a, b in pairwise(bounds)]
         vectors = (np.array(sums) @ orthogonal_transform).T
         factors, _ = nnls(vectors, np.sum(vectors, axis=1), maxiter=20 * count)
@@ -70,14 +72,18 @@ RELATIVE_TOLERANCE = 1e-6
 """Largest relative deviation of a sum [1] of a reduced field."""
 LARGE_FIELD_TOLERANCE = 1e-5
 """Largest relative deviation of a sum [1] of a reduced field with more than MAX_KEPT_NODES nodes."""
-TARGET_DEVIATION_RATIO, ACCEPTED_DEVIATION_RATIO, ADDED_CASE_DEVIATION_RATIO = 0.05, 0.6, 0.15
+TARGET_DEVIATION_OVER_TOLERANCE, ACCEPTED_DEVIATION_OVER_TOLERANCE, ADDED_CASE_DEVIATION_OVER_TOLERANCE = (
+    0.05,
+    0.6,
+    0.15,
+)
 """Deviations over the tolerance [1]: goal in the load cases of the selection; limit in the test load cases
 (the margin is for untested ones); deviation from which a test load case is added to the selection."""
 ROUNDING_BITS = 25
 """Number of bits to which nodes are rounded for the selection [1]: 3e-8, less than the tolerance."""
-MIN_PIVOT_RATIO = 7e-9
+MIN_OVER_MAX_PIVOT = 7e-9
 """Smallest pivot of an independent sum over the largest pivot [1]; sums with smaller pivots are dependent."""
-SUM_COUNT_FACTOR = 0.93
+SUM_COUNT_OVER_PREVIOUS_COUNT = 0.93
 """Number of kept sums, and so of points, in one attempt over that in the attempt before [1]."""
 INITIAL_RANDOM_LOAD_CASES = 100
 """Number of quasi-random load cases in the first selection [1]."""
@@ -142,8 +148,8 @@ def reduce_field(
     If no selection of nodes meets this tolerance, all nodes are kept. For a field with more than
     MAX_KEPT_NODES nodes, a selection within LARGE_FIELD_TOLERANCE is enough.
 
-    preload         : [N] per bolt of the field. Load cases cover PRELOAD_RATIO_RANGE of it, from compression
-                      to full opening, with moments up to `max_moment_ratio`
+    preload         : [N] per bolt of the field. Load cases cover CASE_OVER_FIELD_PRELOAD_RANGE of it, from
+                      compression to full opening, with moments up to `max_moment_ratio`
     nodal_pressures : function of the joint for nodal pressures, see `bolted_interface.nodal_pressures`
 
     Raises RuntimeError if the field has too many nodes and no points are within LARGE_FIELD_TOLERANCE.
@@ -212,10 +218,10 @@ def _search_points(
         worst = float(np.max(deviations))
         if worst <= best_deviation:
             best, best_deviation = points, worst
-        if worst <= ACCEPTED_DEVIATION_RATIO * RELATIVE_TOLERANCE:
+        if worst <= ACCEPTED_DEVIATION_OVER_TOLERANCE * RELATIVE_TOLERANCE:
             break
         system.add_load_cases(
-            test_sums.select_load_cases(deviations > ADDED_CASE_DEVIATION_RATIO * RELATIVE_TOLERANCE)
+            test_sums.select_load_cases(deviations > ADDED_CASE_DEVIATION_OVER_TOLERANCE * RELATIVE_TOLERANCE)
         )
     if best is None:
         return None
@@ -238,7 +244,12 @@ def _deviation_above_tested_moments(
     if moment_ratio_limit >= 1.0:
         return 0.0
     moments = np.linspace(moment_ratio_limit, 1.0, 6)[1:].tolist()
-    loads = [LoadCase(p, sign * m, 0.0) for p in PRELOAD_RATIO_RANGE for m in moments for sign in (-1.0, 1.0)]
+    loads = [
+        LoadCase(p, sign * m, 0.0)
+        for p in CASE_OVER_FIELD_PRELOAD_RANGE
+        for m in moments
+        for sign in (-1.0, 1.0)
+    ]
     return float(
         np.max(
             sum_functions.sum_deviations(
@@ -353,10 +364,10 @@ class _SumSystem:
             self.rounded_distribution.select_nodes(fixed)
         )
         best, count = None, independent.size
-        tolerance = ACCEPTED_DEVIATION_RATIO * LARGE_FIELD_TOLERANCE
+        tolerance = ACCEPTED_DEVIATION_OVER_TOLERANCE * LARGE_FIELD_TOLERANCE
         while count > 1 and np.max(np.abs(share @ values - target)) <= tolerance:
-            best, tolerance = (selected, share), TARGET_DEVIATION_RATIO * RELATIVE_TOLERANCE
-            count = int(SUM_COUNT_FACTOR * count)
+            best, tolerance = (selected, share), TARGET_DEVIATION_OVER_TOLERANCE * RELATIVE_TOLERANCE
+            count = int(SUM_COUNT_OVER_PREVIOUS_COUNT * count)
             try:
                 fewer, share = recombine_weights(values[:, independent[:count]], share, turn[:count, :count])
             except RuntimeError:
@@ -429,7 +440,7 @@ class _SumSystem:
         """Indices of independent sums, the largest pivot first, and the matrix that orthogonalises them."""
         triangle, order = qr(self.sketch_matrix, mode="r", pivoting=True)
         size = np.abs(np.diag(triangle))
-        count = int(np.sum(size > MIN_PIVOT_RATIO * size[0]))
+        count = int(np.sum(size > MIN_OVER_MAX_PIVOT * size[0]))
         return order[:count], solve_triangular(triangle[:count, :count], np.eye(count))
 
 

@@ -17,11 +17,11 @@ from jointfmu.quantity import Array
 from .bolted_interface import BoltedInterface, PressureFunction
 from .nodal_result import NodeIndices
 
-PRELOAD_RATIO_RANGE = (0.05, 3.0)
+CASE_OVER_FIELD_PRELOAD_RANGE = (0.05, 3.0)
 """Range of the preload in load cases over the preload of the field [1]."""
-MAX_OPENED_SHARE = 0.001
+MAX_OPENED_PRELOAD_SHARE = 0.001
 """Largest share of the preload [1] carried by nodes that the largest moment opens."""
-MAX_COMPRESSION_RATIO = 0.03
+MAX_COMPRESSION_OVER_OPENING_MOTION = 0.03
 """Largest compression of the joint over the motion that opens it fully [1]."""
 RANDOM_SEED = 1
 """Seed of the quasi-random load cases."""
@@ -43,7 +43,8 @@ class LoadCase(NamedTuple):
 def max_moment_ratio(joint: BoltedInterface, normalised_pressure: PressureDistribution) -> float:
     """Largest moment at which the sums must be kept, over the moment that unloads a row of bolts [1].
 
-    It is at most 1. It is smaller if nodes that carry the share MAX_OPENED_SHARE of the preload open earlier.
+    It is at most 1. It is smaller if nodes that carry the share MAX_OPENED_PRELOAD_SHARE of the preload open
+    earlier.
     """
     force = normalised_pressure.area_share * normalised_pressure.preload_pressure_ratio
     loaded = force > 0.0
@@ -52,7 +53,7 @@ def max_moment_ratio(joint: BoltedInterface, normalised_pressure: PressureDistri
         opening_moment = normalised_pressure.preload_pressure_ratio[loaded] / unloading
     order = np.argsort(opening_moment)
     opened_force = np.cumsum(force[loaded][order])
-    return float(min(opening_moment[order][np.searchsorted(opened_force, MAX_OPENED_SHARE)], 1.0))
+    return float(min(opening_moment[order][np.searchsorted(opened_force, MAX_OPENED_PRELOAD_SHARE)], 1.0))
 
 
 def initial_load_cases(moment_ratio_limit: float) -> list[LoadCase]:
@@ -62,14 +63,28 @@ def initial_load_cases(moment_ratio_limit: float) -> list[LoadCase]:
     """
     moments = [moment_ratio_limit * m for m in (-1.0, -0.97, -0.9, -0.8, -0.5, 0.0, 0.5, 0.8, 0.9, 0.97, 1.0)]
     extremes = (-1.0, 1.0) if moment_ratio_limit < 1.0 else ()
-    preloaded = [LoadCase(p, m, 0.0) for p in PRELOAD_RATIO_RANGE for m in (*moments, *extremes)]
-    openings = (-MAX_COMPRESSION_RATIO, -0.4 * MAX_COMPRESSION_RATIO, 0.05, 0.2, 0.4, 0.55, 0.65, 0.75, 0.85)
-    opened = [LoadCase(p, m, s) for p in PRELOAD_RATIO_RANGE for m in moments[::2] for s in openings]
+    preloaded = [LoadCase(p, m, 0.0) for p in CASE_OVER_FIELD_PRELOAD_RANGE for m in (*moments, *extremes)]
+    openings = (
+        -MAX_COMPRESSION_OVER_OPENING_MOTION,
+        -0.4 * MAX_COMPRESSION_OVER_OPENING_MOTION,
+        0.05,
+        0.2,
+        0.4,
+        0.55,
+        0.65,
+        0.75,
+        0.85,
+    )
+    opened = [
+        LoadCase(p, m, s) for p in CASE_OVER_FIELD_PRELOAD_RANGE for m in moments[::2] for s in openings
+    ]
     steep = [
         moment_ratio_limit * m for m in (-0.95, -0.85, -0.7, 0.7, 0.85, 0.95)
     ]  # nodes open row by row there
     return (
-        preloaded + opened + [LoadCase(PRELOAD_RATIO_RANGE[0], m, s) for m in steep for s in (0.3, 0.45, 0.6)]
+        preloaded
+        + opened
+        + [LoadCase(CASE_OVER_FIELD_PRELOAD_RANGE[0], m, s) for m in steep for s in (0.3, 0.45, 0.6)]
     )
 
 
@@ -78,10 +93,14 @@ def random_load_cases(moment_ratio_limit: float) -> Iterator[LoadCase]:
     from scipy.stats import qmc  # imported here: its import is slow
 
     sequence = qmc.Halton(3, seed=RANDOM_SEED)
-    low, high = np.log(PRELOAD_RATIO_RANGE)
+    low, high = np.log(CASE_OVER_FIELD_PRELOAD_RANGE)
     points = (point for _ in count() for point in sequence.random(LOAD_CASES_PER_DRAW))
     for i, (a, b, c) in enumerate(points):
-        opening = c * (1.0 + MAX_COMPRESSION_RATIO) - MAX_COMPRESSION_RATIO if i % 3 else 0.0
+        opening = (
+            c * (1.0 + MAX_COMPRESSION_OVER_OPENING_MOTION) - MAX_COMPRESSION_OVER_OPENING_MOTION
+            if i % 3
+            else 0.0
+        )
         yield LoadCase(
             float(np.exp(low + a * (high - low))), float(moment_ratio_limit * (2.0 * b - 1.0)), float(opening)
         )
@@ -91,7 +110,7 @@ LOAD_CASES_PER_DRAW = 64
 """Number of load cases drawn in one call, which takes as long as a call for one load case."""
 COUPLING_TOLERANCE_FACTOR = 100.0
 """Tolerance of first and mixed moments over the tolerance of the other sums [1]."""
-_CUBIC_ROOT_PRESSURE_RATIO = 1e-2
+_CUBIC_ROOT_OVER_CLOSURE_PRESSURE = 1e-2
 """Pressure over the pressure of complete closure [1], below which the table is interpolated in the cubic root
 of the pressure."""
 _TABLE_REFINEMENT_FRACTIONS = np.linspace(0.0, 1.0, 33)[:-1]
@@ -193,7 +212,7 @@ class SumFunctions:
         """
         pressure, root, approach = self.approach_table
         start = np.interp(p, pressure, approach)
-        closing = p < _CUBIC_ROOT_PRESSURE_RATIO * self.pressure_curve.closing_end_load
+        closing = p < _CUBIC_ROOT_OVER_CLOSURE_PRESSURE * self.pressure_curve.closing_end_load
         start[closing] = np.interp(np.cbrt(p[closing]), root, approach)
         value, slope, curvature = self.pressure_curve.derivatives(start, 2)
         curvature = np.where(start < self.pressure_curve.end_point[0], curvature, 0.0)
@@ -249,7 +268,9 @@ class SumFunctions:
         moment_ratio_limit : largest moment over the moment that unloads a row of bolts [1]
         """
         loads = [
-            LoadCase(p, m * moment_ratio_limit, 0.0) for p in PRELOAD_RATIO_RANGE for m in (-1.0, 0.0, 1.0)
+            LoadCase(p, m * moment_ratio_limit, 0.0)
+            for p in CASE_OVER_FIELD_PRELOAD_RANGE
+            for m in (-1.0, 0.0, 1.0)
         ]
         start = self._approach_at_pressure(self._preload_pressure(normalised_pressure, loads))
         max_opening = np.max(start, axis=1) - self.pressure_curve.displacement[0]

@@ -21,12 +21,12 @@ GAUSSIAN_DECAY_LIMIT = 0.48
 MIN_SECTION_POINTS = 100
 """Smallest number of points of a section [1]: fewer belong to a few summits. A profile of few points has at
 least an eighth of its points in a section."""
-MIN_SHARE, MAX_SHARE = 1e-3, 0.38
+MIN_SECTION_AREA_SHARE, MAX_SECTION_AREA_SHARE = 1e-3, 0.38
 """Smallest and largest area share of the section [1] that was compared with boundary elements: pressures of
 0.0003 to 0.1 E* h' on Gaussian heights."""
-TYPICAL_SHARE = 0.03
+TYPICAL_SECTION_AREA_SHARE = 0.03
 """Area share of the section [1] at which the upper tail of the heights is compared with Gaussian heights."""
-MAX_GAUSSIAN_RATIO = 1.3
+MAX_GAUSSIAN_TAIL_RATIO = 1.3
 """Largest ratio of the rms height and the height of the tail [1], either way, of Gaussian heights."""
 SCAN_PARTS = 4
 """Number of parts of a scan [1] that must all have non-Gaussian heights: few hills differ by chance."""
@@ -100,7 +100,7 @@ def skewed_tail_ratio(skewness: float) -> float:
         return float((np.exp(s**2) + 2.0) * np.sqrt(np.expm1(s**2)) - abs(skewness))
 
     s = brentq(excess_skewness, 1e-6, 2.0) * np.sign(skewness)
-    plane, share = -ndtri(TYPICAL_SHARE), np.array(TYPICAL_SHARE)
+    plane, share = -ndtri(TYPICAL_SECTION_AREA_SHARE), np.array(TYPICAL_SECTION_AREA_SHARE)
     excess = np.exp(0.5 * s**2) * ndtr(s - plane) / share - np.exp(s * plane)
     rms = np.exp(0.5 * s**2) * np.sqrt(np.expm1(s**2)) * np.sign(s)
     return float(excess / rms / gaussian_mean_excess(share))
@@ -141,9 +141,12 @@ class BearingCurve:
 
     @property
     def tail_height(self) -> float:
-        """Rms height [m] of Gaussian heights with the same mean excess at the section of TYPICAL_SHARE."""
-        excess = np.interp(TYPICAL_SHARE, self.share, self.mean_excess)
-        return float(excess / gaussian_mean_excess(np.array(TYPICAL_SHARE)))
+        """Rms height [m] of Gaussian heights with the same mean excess as the surface.
+
+        The excess is compared at the section of TYPICAL_SECTION_AREA_SHARE.
+        """
+        excess = np.interp(TYPICAL_SECTION_AREA_SHARE, self.share, self.mean_excess)
+        return float(excess / gaussian_mean_excess(np.array(TYPICAL_SECTION_AREA_SHARE)))
 
     def pressure(self, modulus: float) -> Array:
         """Nominal contact pressure p (n) [Pa] at which the contact reaches each section of the heights.
@@ -161,10 +164,15 @@ class BearingCurve:
 
     def checked_pressures(self, modulus: float) -> tuple[float, float]:
         """Smallest and largest pressure [Pa] that were compared with boundary elements."""
-        low, high = np.interp([MIN_SHARE, MAX_SHARE], self.share, self.pressure(modulus))
+        low, high = np.interp(
+            [MIN_SECTION_AREA_SHARE, MAX_SECTION_AREA_SHARE], self.share, self.pressure(modulus)
+        )
         return float(low), float(high)
 
     def stiffness_table(self, modulus: float, points: int = 16) -> tuple[Array, Array]:
-        """Pressures [Pa] and stiffness [Pa/m] of the law `table`, which must not fall; up to MAX_SHARE."""
+        """Pressures [Pa] and stiffness [Pa/m] of the law `table`, which must not fall.
+
+        The pressures go up to MAX_SECTION_AREA_SHARE.
+        """
         p = np.geomspace(self.pressure(modulus)[0], self.checked_pressures(modulus)[1], points)
         return p, np.maximum.accumulate(self.stiffness(p, modulus))

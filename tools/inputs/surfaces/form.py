@@ -16,7 +16,7 @@ from .heights import FORM_NAMES, RELATIVE_ROUND_OFF, ArealMap, Heights
 
 Mask = NDArray[np.bool_]
 """Boolean array: which points are selected."""
-SPIKE_RATIO = 8.0
+SPIKE_OVER_STANDARD_DEVIATION = 8.0
 """Deviation of a spike from the median of its neighbours, over the standard deviation of all points [1]."""
 FILL_ITERATIONS = 50
 """Number of iterations of the harmonic filling: enough for gaps up to about ten points wide."""
@@ -50,9 +50,9 @@ class Repair:
 def remove_spikes(heights: Heights) -> tuple[Heights, list[Repair]]:
     """Replace spikes by missing points; return the heights and the repairs.
 
-    A spike deviates from the median of its neighbours by more than SPIKE_RATIO standard deviations. The
-    median is taken over 5 points of a profile, or 5 x 5 points of a map. The standard deviation is robust:
-    the 0.9 quantile of the deviation over the same quantile of a normal distribution.
+    A spike deviates from the median of its neighbours by more than SPIKE_OVER_STANDARD_DEVIATION standard
+    deviations. The median is taken over 5 points of a profile, or 5 x 5 points of a map. The standard
+    deviation is robust: the 0.9 quantile of the deviation over the same quantile of a normal distribution.
     """
     from scipy.ndimage import median_filter
 
@@ -62,7 +62,7 @@ def remove_spikes(heights: Heights) -> tuple[Heights, list[Repair]]:
     scale = float(np.quantile(deviation[valid], 0.9)) / 1.645
     if scale == 0.0:
         return heights, []
-    spikes = valid & (deviation > SPIKE_RATIO * scale)
+    spikes = valid & (deviation > SPIKE_OVER_STANDARD_DEVIATION * scale)
     if not spikes.any():
         return heights, []
     clean = heights.with_heights(np.where(spikes, np.nan, z))
@@ -179,7 +179,7 @@ def prepare_scan(heights: Heights, form: str = FORM_NAMES[0], keep_spikes: bool 
 MIN_WAVE_SPACINGS = 5.0
 """Shortest wavelength of the slope over the point spacing [1]. Shorter waves are noise or effects of the
 instrument (docs/surfaces_reference.md)."""
-MIN_WAVE_RATIO = 4.0
+MIN_LONGEST_OVER_SHORTEST_WAVE = 4.0
 """Smallest allowed ratio of the longest to the shortest wavelength of a scan [1]."""
 
 
@@ -213,11 +213,11 @@ def default_longest_wave(heights: Heights) -> float:
 
 def check_longest_wave(heights: Heights, longest_wave: float) -> None:
     """Raise ValueError if a scan cannot resolve waves up to this longest wavelength [m]."""
-    low, high = MIN_WAVE_RATIO * _shortest_wave(heights), max(heights.lengths)
+    low, high = MIN_LONGEST_OVER_SHORTEST_WAVE * _shortest_wave(heights), max(heights.lengths)
     if not low <= longest_wave <= high * (1.0 + 1e-9):
         raise ValueError(
             f"{heights.name}: longest wave = {longest_wave:g} m is outside [{low:.3g}, {high:.3g}], from "
-            f"{MIN_WAVE_RATIO * MIN_WAVE_SPACINGS:g} points to the length of the scan"
+            f"{MIN_LONGEST_OVER_SHORTEST_WAVE * MIN_WAVE_SPACINGS:g} points to the length of the scan"
         )
 
 

@@ -106,7 +106,7 @@ GridIndices = NDArray[np.int64]
 
 GRID_TOLERANCE = 0.05
 """Largest deviation of a position from a regular grid over the grid spacing [1]."""
-MAX_LAST_DIGIT_RATIO = 1e9
+MAX_POSITION_OVER_LAST_DIGIT = 1e9
 """Largest position over the unit of its last digit [1]; beyond it, the last digit is unknown."""
 
 
@@ -161,7 +161,7 @@ def last_digit_unit(positions: Array) -> Array:
 
     The positions have a fixed number of decimals or of significant digits.
 
-    0 if the positions have more digits than MAX_LAST_DIGIT_RATIO.
+    0 if the positions have more digits than MAX_POSITION_OVER_LAST_DIGIT.
     """
     sizes = np.where(positions == 0.0, 1.0, np.abs(positions))
     decade = 10.0 ** np.floor(np.log10(sizes))
@@ -174,12 +174,12 @@ def _common_power_of_ten(numbers: Array) -> float:
 
     It is the unit of their last digit.
 
-    0 if the largest number is more than MAX_LAST_DIGIT_RATIO times that power.
+    0 if the largest number is more than MAX_POSITION_OVER_LAST_DIGIT times that power.
     """
     largest = float(np.abs(numbers).max())
     for power in range(0, -16, -1):
         scaled = numbers * 10.0**-power
-        if largest * 10.0**-power > MAX_LAST_DIGIT_RATIO:
+        if largest * 10.0**-power > MAX_POSITION_OVER_LAST_DIGIT:
             break
         if np.abs(scaled - np.rint(scaled)).max() < 1e-6:
             return float(10.0**power)

@@ -11,7 +11,7 @@ from .results import Estimate, FractalResult, Identification
 
 
 def fractal_parameters(
-    identification: Identification, joint: str, method: str | None = None
+    identified_surface: Identification, joint: str, method: str | None = None
 ) -> dict[str, tuple[float, FractalResult]]:
     """D and G of the rough surfaces of a joint kind: {parameter name: (value, result it comes from)}.
 
@@ -24,7 +24,9 @@ def fractal_parameters(
         raise ValueError(f"joint = {joint!r} is not one of {', '.join(KINDS)}")
     values: dict[str, tuple[float, FractalResult]] = {}
     for surface in KINDS[joint].surfaces:
-        result = identification.select_best_result(_profile_direction(identification, surface), method)
+        result = identified_surface.select_best_result(
+            _profile_direction(identified_surface, surface), method
+        )
         D, G = _dimension_and_roughness(result, surface)
         values |= {
             f"{surface.parameter_prefix}.D": (D.value, result),
@@ -33,18 +35,18 @@ def fractal_parameters(
     return values
 
 
-def undetermined_reason(identification: Identification, joint: str) -> str | None:
+def undetermined_reason(identified_surface: Identification, joint: str) -> str | None:
     """Reason why D and G of the rough surfaces of a joint are not determined; None if they are."""
     directions = dict.fromkeys(
-        _profile_direction(identification, surface) for surface in KINDS[joint].surfaces
+        _profile_direction(identified_surface, surface) for surface in KINDS[joint].surfaces
     )
-    doubts = (identification.undetermined_reason(direction) for direction in directions)
+    doubts = (identified_surface.undetermined_reason(direction) for direction in directions)
     return next((text for text in doubts if text), None)
 
 
-def _profile_direction(identification: Identification, surface: RoughSurface) -> str | None:
+def _profile_direction(identified_surface: Identification, surface: RoughSurface) -> str | None:
     """Direction that the joint needs, if the measured surface is textured; else None: the whole surface."""
-    return surface.direction if identification.is_textured else None
+    return surface.direction if identified_surface.is_textured else None
 
 
 def _dimension_and_roughness(result: FractalResult, surface: RoughSurface) -> tuple[Estimate, Estimate]:
@@ -61,7 +63,7 @@ def dimension_meaning(joint: str) -> str:
 
 def with_surface(
     file: ParameterFile,
-    identification: Identification,
+    identified_surface: Identification,
     method: str | None = None,
     set_undetermined: bool = False,
 ) -> ParameterFile:
@@ -74,61 +76,63 @@ def with_surface(
     set_undetermined : set D and G or the Hurst exponent even if they are not determined; ValueError if one is
         not finite
     """
-    sure = set_undetermined or undetermined_reason(identification, file.joint) is None
+    sure = set_undetermined or undetermined_reason(identified_surface, file.joint) is None
     if file.law == ROUGHNESS_LAW:
-        file = _with_roughness_law(file, identification, method, sure)
+        file = _with_roughness_law(file, identified_surface, method, sure)
     elif file.law == TABLE_LAW:
         return file  # its points follow from the heights: nothing to compare
     elif sure:
-        file = _with_fractal_parameters(file, identification, method)
-    for side, scan in identification.roughness_by_side.items():
-        name = identification.file_names[min(side, len(identification.file_names)) - 1]
+        file = _with_fractal_parameters(file, identified_surface, method)
+    for side, scan in identified_surface.roughness_by_side.items():
+        name = identified_surface.file_names[min(side, len(identified_surface.file_names)) - 1]
         source = f"measured: {name}; waves up to {scan.longest_wave:.4g} m"
         file = file.with_roughness({f"Rq{side}": scan.h}, "measured", source)
     return file
 
 
 def _with_roughness_law(
-    file: ParameterFile, identification: Identification, method: str | None, set_hurst: bool
+    file: ParameterFile, identified_surface: Identification, method: str | None, set_hurst: bool
 ) -> ParameterFile:
     """Set slope, longest wave and, if it is determined, the Hurst exponent of the law `roughness`."""
-    shortest, longest = identification.scans[0].shortest_wave, identification.longest_wave
-    source = f"measured: {_describe_files(identification)}; waves up to {longest:.4g} m"
+    shortest, longest = identified_surface.scans[0].shortest_wave, identified_surface.longest_wave
+    source = f"measured: {_describe_files(identified_surface)}; waves up to {longest:.4g} m"
     file = file.with_values({"longest_wave": longest}, "measured", source)
     file = file.with_values(
-        {"slope": identification.slope}, "measured", f"{source}, down to {shortest:.3g} m"
+        {"slope": identified_surface.slope}, "measured", f"{source}, down to {shortest:.3g} m"
     )
     if not set_hurst:
         return file
-    result = identification.select_best_result(method=method)
-    return file.with_values({"hurst": result.fit.H}, "measured", _describe_fit(identification, result))
+    result = identified_surface.select_best_result(method=method)
+    return file.with_values({"hurst": result.fit.H}, "measured", _describe_fit(identified_surface, result))
 
 
 def _with_fractal_parameters(
-    file: ParameterFile, identification: Identification, method: str | None
+    file: ParameterFile, identified_surface: Identification, method: str | None
 ) -> ParameterFile:
     """Set D and G of the rough surfaces of the joint; ValueError if one is not finite."""
     surfaces = {surface.parameter_prefix: surface for surface in KINDS[file.joint].surfaces}
-    for name, (value, result) in fractal_parameters(identification, file.joint, method).items():
+    for name, (value, result) in fractal_parameters(identified_surface, file.joint, method).items():
         if not math.isfinite(value):
             D, G = result.profile.D.value, result.profile.G
             raise ValueError(
-                f"{name} of {' and '.join(identification.file_names)} is not determined (D = {D:.2f}, "
+                f"{name} of {' and '.join(identified_surface.file_names)} is not determined (D = {D:.2f}, "
                 "the interval of "
                 f"G spans {G.interval_decades:.0f} decades): {file.joint} needs a number"
             )
         prefix, _, symbol = name.rpartition(".")
-        source = _describe_source(identification, result, surfaces[prefix], symbol)
+        source = _describe_source(identified_surface, result, surfaces[prefix], symbol)
         file = file.with_values({name: value}, "measured", source)
     return file
 
 
-def _describe_files(identification: Identification) -> str:
+def _describe_files(identified_surface: Identification) -> str:
     """Names of the scanned files and the sides that they represent, as text."""
-    if len(identification.file_names) == 2:
-        return f"{identification.file_names[0]} and {identification.file_names[1]} (equivalent surface)"
-    side = identification.side
-    return identification.file_names[0] + (
+    if len(identified_surface.file_names) == 2:
+        return (
+            f"{identified_surface.file_names[0]} and {identified_surface.file_names[1]} (equivalent surface)"
+        )
+    side = identified_surface.side
+    return identified_surface.file_names[0] + (
         ""
         if side is None
         else " (both sides alike)"
@@ -137,17 +141,17 @@ def _describe_files(identification: Identification) -> str:
     )
 
 
-def _describe_fit(identification: Identification, result: FractalResult) -> str:
+def _describe_fit(identified_surface: Identification, result: FractalResult) -> str:
     """Text for the source of a parameter: files, method and range of scales of a result."""
     methods = {"structure": "structure function, lags", "psd": "power spectral density, wavelengths"}
     return (
-        f"identified from {_describe_files(identification)} by {methods[result.method]} "
+        f"identified from {_describe_files(identified_surface)} by {methods[result.method]} "
         f"{result.fit.min_scale:.3g} to {result.fit.max_scale:.3g} m"
     )
 
 
 def _describe_source(
-    identification: Identification, result: FractalResult, surface: RoughSurface, symbol: str
+    identified_surface: Identification, result: FractalResult, surface: RoughSurface, symbol: str
 ) -> str:
     """Text for the source of D or G: files, method, direction and confidence interval."""
     D, G = _dimension_and_roughness(result, surface)
@@ -157,6 +161,6 @@ def _describe_source(
     else:
         extent = "of the profile" if result.direction in ("profile", "areal") else f"along {result.direction}"
     return (
-        f"{_describe_fit(identification, result)}; {extent}; 95 % interval {estimate.low:.4g} to "
+        f"{_describe_fit(identified_surface, result)}; {extent}; 95 % interval {estimate.low:.4g} to "
         f"{estimate.high:.4g}"
     )

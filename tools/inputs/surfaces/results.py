@@ -11,7 +11,7 @@ from jointfmu.quantity import Array
 
 from ...common import plots
 from ..fractal import second_difference_ratio
-from .bearing_curve import MAX_GAUSSIAN_RATIO, BearingCurve, HeightSample, tail_ratio
+from .bearing_curve import MAX_GAUSSIAN_TAIL_RATIO, BearingCurve, HeightSample, tail_ratio
 from .fit import SelfAffineLaw
 from .form import Repair, ScanRoughness
 from .heights import ArealMap
@@ -148,7 +148,7 @@ class Identification:
     def is_gaussian(self) -> bool:
         """Whether the tail is as high as that of Gaussian heights, or parts of the scan disagree."""
         ratios = [self.tail_ratio, *map(tail_ratio, self.gap_parts)]
-        return not (max(ratios) < 1.0 / MAX_GAUSSIAN_RATIO or min(ratios) > MAX_GAUSSIAN_RATIO)
+        return not (max(ratios) < 1.0 / MAX_GAUSSIAN_TAIL_RATIO or min(ratios) > MAX_GAUSSIAN_TAIL_RATIO)
 
     @property
     def slope(self) -> float:
@@ -258,11 +258,11 @@ DIRECTION_COLOURS = {"profile": plots.BLUE, "areal": plots.BLUE, "x": plots.RED,
 """{direction of a result: colour in the plot}."""
 
 
-def draw_identification(identification: Identification, path: str | Path) -> None:
+def draw_identification(identified_surface: Identification, path: str | Path) -> None:
     """Plot structure functions and spectra with the fitted laws, as .png or .svg."""
     with plots.open_figure(path, (9.6, 5.0)) as figure:
         axes = dict(zip(("structure", "psd"), figure.subplots(1, 2), strict=True))
-        for result in identification.results:
+        for result in identified_surface.results:
             _draw_result(axes[result.method], result)
         axes["structure"].set_title("structure function", loc="left")
         axes["structure"].set_xlabel("lag τ [m]")
@@ -270,8 +270,10 @@ def draw_identification(identification: Identification, path: str | Path) -> Non
         axes["psd"].set_title("power spectral density, one-sided", loc="left")
         axes["psd"].set_xlabel("frequency ω [1/m]")
         axes["psd"].set_ylabel("P(ω) [m³]")
-        label = f"h = {1e6 * identification.h:.3g} µm: all waves to the right"
-        axes["psd"].axvline(1.0 / identification.longest_wave, color=plots.GREY, ls="--", lw=1.0, label=label)
+        label = f"h = {1e6 * identified_surface.h:.3g} µm: all waves to the right"
+        axes["psd"].axvline(
+            1.0 / identified_surface.longest_wave, color=plots.GREY, ls="--", lw=1.0, label=label
+        )
         for panel in axes.values():
             panel.set_xscale("log")
             panel.set_yscale("log")

@@ -28,7 +28,7 @@ MAX_HEADER_BYTES = 2**18
 """Bytes at the start of a file that are searched for its header and its first row of heights."""
 HEIGHT_COLUMN_NAMES = ("z", "height", "altitude", "depth", "elevation")
 """Names of a column of heights in a table with more columns, in lower case."""
-MISSING_VALUE_RATIO = 1000.0
+MISSING_VALUE_OVER_HEIGHT_RANGE = 1000.0
 """Magnitude of a repeated height over the range of the other heights [1]: above, it marks missing points."""
 _SPACING_PATTERN = re.compile(r"\s*([-+]?[\d.,]+(?:[eE][-+]?\d+)?)\s*([^\W\d_]+)\s*")
 """Pattern of a spacing with a unit."""
@@ -168,7 +168,7 @@ def _check_missing_value(path: Path, z: Array) -> None:
         if (
             count > 1
             and others.size
-            and abs(extreme) > MISSING_VALUE_RATIO * max(float(np.ptp(others)), 1e-300)
+            and abs(extreme) > MISSING_VALUE_OVER_HEIGHT_RANGE * max(float(np.ptp(others)), 1e-300)
         ):
             raise InputRefusal(
                 f"{path}: {count} heights are {extreme:.10g}, all others {others.min():g} to "

@@ -40,7 +40,7 @@ FORCE_TOLERANCE = 0.3
 """Relative error [1] of the total force of interpolated pressures that is still corrected by scaling."""
 AREA_TOLERANCE = 0.1
 """Relative difference [1] allowed between the area of a mesh and A_0 of the joint."""
-_MAX_DISTANCE_RATIO = 0.1
+_MAX_NODE_DISTANCE_OVER_DIAGONAL = 0.1
 """Distance of a mesh node from the nearest node of the joint over the diagonal of the contact [1], at
 most."""
 
@@ -77,7 +77,7 @@ def springs_on_mesh(
     shape, position = spring.points, node_pairs.position
     share = node_pairs.area / node_pairs.area.sum()
     distance, nearest = KDTree(shape.position).query(position)
-    allowed = _MAX_DISTANCE_RATIO * float(np.hypot(*np.ptp(shape.position, axis=0)))
+    allowed = _MAX_NODE_DISTANCE_OVER_DIAGONAL * float(np.hypot(*np.ptp(shape.position, axis=0)))
     if np.any(distance > allowed):
         worst = int(np.argmax(distance))
         raise ValueError(
@@ -185,7 +185,7 @@ def _distribute_to_nodes(
     )
 
 
-MAX_CONTACT_FORCE_RATIO = 10.0
+MAX_CONTACT_OVER_TIGHTENING_FORCE = 10.0
 """Total contact force at the compressed end of the table, over the contact force at tightening [1]."""
 _ERROR_SAMPLE_COUNT = 4000
 """Number of sample points on each side of the tightened state [1], at which the error is measured."""
@@ -238,7 +238,9 @@ def tabulate_normal_force(
     compression = np.linspace(0.0, float(high - np.max(start)), 400)
     end = float(
         np.interp(
-            MAX_CONTACT_FORCE_RATIO * preload_force, contact_force_and_stiffness(-compression)[0], compression
+            MAX_CONTACT_OVER_TIGHTENING_FORCE * preload_force,
+            contact_force_and_stiffness(-compression)[0],
+            compression,
         )
     )
     opening = float(np.max(start) - low)

@@ -17,7 +17,7 @@ from jointfmu.parameters import ParameterFile
 
 PRELOAD_ENTRY = "inputs.preload"
 """Entry of the preload in a parameter file."""
-REPORTED_SHEAR_RATIO = 0.1
+REPORTED_SHEAR_OVER_SLIP_FORCE = 0.1
 """Shear force over the gross-slip force [1] at which the loss factor is reported."""
 
 
@@ -42,7 +42,7 @@ def friction_results(parameter_file: ParameterFile, preload: float) -> tuple[flo
     """
     joint = with_rigid_members(parameter_file.values)
     remaining_preload = float(working_preload(joint, preload))
-    shear = REPORTED_SHEAR_RATIO * float(slip_force(joint, remaining_preload))
+    shear = REPORTED_SHEAR_OVER_SLIP_FORCE * float(slip_force(joint, remaining_preload))
     rows = []
     for mu in (joint.mu, *parameter_file.ranges.get("mu", ())):
         other = replace(joint, mu=mu)

@@ -19,7 +19,7 @@ MARGIN, HATCH_SPACING = 64.0, 9.0
 """Margin on all sides, and spacing of the hatching [px]."""
 CELL_OVERLAP = 0.6
 """Overlap of neighbouring area cells of the pressure map [px], which avoids visible gaps."""
-DOT_RADIUS_RATIO = 0.22
+DOT_RADIUS_OVER_NODE_DISTANCE = 0.22
 """Radius of a dot, which marks a node of a field, over the mean distance of the nodes [1]."""
 MIN_SECTION_HEIGHT = 70.0
 """Smallest height of both sides together in the section [px]: thinner plates are stretched along z."""
@@ -115,7 +115,7 @@ def draw_plan(joint: AnyBoltedJoint, preload: float, moment: float) -> str:
         return np.array([MARGIN, MARGIN]) + scale * np.array([position[0] - low[0], high[1] - position[1]])
 
     points, top = isinstance(joint.pattern, NodalField), float(p.max())
-    dot = DOT_RADIUS_RATIO * float(np.sqrt(np.prod(size) / len(p)))
+    dot = DOT_RADIUS_OVER_NODE_DISTANCE * float(np.sqrt(np.prod(size) / len(p)))
     cells = scale * _cell_sizes(joint, shape.area_share) + CELL_OVERLAP
     for i in np.argsort(p if points else -shape.area_share, kind="stable"):
         (x, y), value = to_pixels(shape.position[i]), float(p[i])

@@ -25,9 +25,9 @@ from ...pages.report.load_history import LoadHistory
 from .field import PlaneLayout
 from .gross_slip import PRELOAD_ENTRY, friction_results, preload_results
 from .picture import draw_plan, draw_section
-from .tensile_load import MAX_BOLT_FORCE_RATIO, bolt_forces
+from .tensile_load import MAX_BOLT_OVER_TIGHTENING_FORCE, bolt_forces
 
-MAX_PLOTTED_LOAD_RATIO = 1.3
+MAX_PLOTTED_OVER_OPENING_LOAD = 1.3
 """Largest plotted tensile force over the opening load of the interface [1]."""
 EQUAL_SHARE_TOLERANCE = 0.05
 """Excess of the largest bolt share over the mean share [1], up to which bolts count as equally loaded."""
@@ -124,8 +124,6 @@ def stiffness_figures(load_history: LoadHistory) -> list[Figure]:
     """Figures of the stiffness of joint, interface and bolts, and of bolt forces over a force along z.
 
     Empty for rigid sides.
-
-    Empty for rigid sides.
     """
     joint, spring = load_history.file.values, load_history.spring
     if not joint.has_elastic_members:
@@ -136,7 +134,7 @@ def stiffness_figures(load_history: LoadHistory) -> list[Figure]:
     remaining_preload = float(working_preload(joint, preload))
     opening = compliances.opening_load(remaining_preload)
     limit = float(slip_force(joint, remaining_preload))
-    panel = _bolt_force_chart(spring, preload, moment, MAX_PLOTTED_LOAD_RATIO * opening)
+    panel = _bolt_force_chart(spring, preload, moment, MAX_PLOTTED_OVER_OPENING_LOAD * opening)
     share = compliances.bolt_force[:, 2]
     most_loaded = int(np.argmax(share))
     is_uneven = share[most_loaded] > (1.0 + EQUAL_SHARE_TOLERANCE) * np.mean(share)
@@ -150,8 +148,8 @@ def stiffness_figures(load_history: LoadHistory) -> list[Figure]:
         "with these stiffnesses); a joint that peels opens at a lower load, as the plot shows. The whole "
         f"interface slips at {_format_value(limit, 'N')} along x or y; slip begins at the edges at a far "
         "lower load, and its loss is under Loops. The plot shows a tensile force up to "
-        f"{MAX_PLOTTED_LOAD_RATIO:g} times the opening load, free in the other five motions, and up to "
-        f"{MAX_BOLT_FORCE_RATIO:g} times the force of a bolt at tightening."
+        f"{MAX_PLOTTED_OVER_OPENING_LOAD:g} times the opening load, free in the other five motions, and up "
+        f"to {MAX_BOLT_OVER_TIGHTENING_FORCE:g} times the force of a bolt at tightening."
     )
     return [Figure("The complete joint", text, [panel], table=_stiffness_rows(compliances))]
 

@@ -13,7 +13,7 @@ MAX_ITERATIONS, MAX_LINE_SEARCH = 100, 8
 MIN_DISPLACEMENT, MIN_STIFFNESS_RATIO = 1e-12, 1e-6
 """Tangential displacement of a patch [m] that avoids a division by zero, and stiffness of open patches and
 points over the largest stiffness at tightening [1]: it keeps the matrix of an open joint regular."""
-MAX_BOLT_FORCE_RATIO = 2.0
+MAX_BOLT_OVER_TIGHTENING_FORCE = 2.0
 """Bolt force over the force at tightening [1] at which the calculation ends."""
 
 
@@ -27,7 +27,7 @@ def bolt_forces(spring: BoltedJointSpring, preload: float, moment: float, tensil
     z: relative displacement and modal coordinates; B: bolt forces; E: elongation of the bolts; G: derivative
     of the opening of the points; A: areas; p: contact pressure. K: stiffness of modes and patches, with the
     secant stiffness of the patches from the iteration before. Ends at the first force at which a bolt exceeds
-    MAX_BOLT_FORCE_RATIO, or at which the iteration does not converge.
+    MAX_BOLT_OVER_TIGHTENING_FORCE, or at which the iteration does not converge.
     """
     whole, modes, law = spring.assembly, spring.modes, spring.friction_law.foundation()
     start = spring.preloaded_approach(preload, moment)
@@ -72,7 +72,7 @@ def bolt_forces(spring: BoltedJointSpring, preload: float, moment: float, tensil
         else:
             break
         forces = bolts.bolt_force(tension, E @ z)
-        if np.any(forces > MAX_BOLT_FORCE_RATIO * tension):
+        if np.any(forces > MAX_BOLT_OVER_TIGHTENING_FORCE * tension):
             break
         results.append(forces)
     return np.array(results)

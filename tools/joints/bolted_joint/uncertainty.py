@@ -16,11 +16,11 @@ INTERFACE_ONLY_PARAMETERS = {"sides": "rigid", "bolt_stiffness": 0.0, "memory": 
 """Parameters of the interface alone: rigid members, no bolts in parallel, friction with slip."""
 LOG_FORCE_RANGE, LOG_FORCE_POINT_COUNT = 30.0, 41
 """Range of ln(force) below the end of the ramp, and number of points [1] of the integral of dF/K."""
-LOOP_SHEAR_FORCE_RATIO = 0.05
+LOOP_SHEAR_OVER_BOLT_FORCE = 0.05
 """Shear force of the loop over the force of all bolts [1]: half of mu = 0.1."""
-MAX_SLIP_RATIO = 0.8
+MAX_SHEAR_OVER_SLIP_FORCE = 0.8
 """Largest shear force of the loop over the slip force [1]."""
-LOOP_LOAD_RATIOS = np.geomspace(0.02, 1.0, 5)
+LOOP_LOADS_OVER_RAMP_END = np.geomspace(0.02, 1.0, 5)
 """Preloads at which loops are computed, over the end of the load ramp [1].
 
 The loss factor is interpolated between them."""
@@ -55,15 +55,19 @@ def opening_load(sample: JointSample, preload: Array) -> Array:
 
 
 def loss_factor(sample: JointSample, preload: Array) -> Array:
-    """Loss factor (m) [1] of loops of the interface under LOOP_SHEAR_FORCE_RATIO of the force of all bolts.
+    """Loss factor (m) [1] of loops of the interface at preloads (m) [N].
+
+    The amplitude of the shear force is LOOP_SHEAR_OVER_BOLT_FORCE of the force of all bolts.
 
     The FMU gives the loss factor of a loop with the present displacement as its amplitude. Newton's method
     finds the displacement of the shear force, from that of a virgin curve with the same initial stiffness and
     friction limit, for a pressure p ~ approach^START_EXPONENT.
     """
-    loads, parameters = preload[-1] * LOOP_LOAD_RATIOS, sample.parameters
+    loads, parameters = preload[-1] * LOOP_LOADS_OVER_RAMP_END, sample.parameters
     limit = parameters.mu * parameters.n_bolts * loads
-    shear = np.minimum(LOOP_SHEAR_FORCE_RATIO * parameters.n_bolts * loads, MAX_SLIP_RATIO * limit)
+    shear = np.minimum(
+        LOOP_SHEAR_OVER_BOLT_FORCE * parameters.n_bolts * loads, MAX_SHEAR_OVER_SLIP_FORCE * limit
+    )
     stiffness = sample.follow({"preload": loads, "s_rel_x": np.zeros_like(loads)}, INTERFACE_ONLY_PARAMETERS)[
         "K_xx"
     ]
@@ -75,8 +79,8 @@ def loss_factor(sample: JointSample, preload: Array) -> Array:
         amplitude = amplitude + step
         if np.all(np.abs(step) <= RELATIVE_TOLERANCE * amplitude):
             break
-    relative = np.maximum(preload / preload[-1], LOOP_LOAD_RATIOS[0])
-    return np.asarray(spline_weights(np.log(LOOP_LOAD_RATIOS), np.log(relative)) @ state["eta_loop"])
+    relative = np.maximum(preload / preload[-1], LOOP_LOADS_OVER_RAMP_END[0])
+    return np.asarray(spline_weights(np.log(LOOP_LOADS_OVER_RAMP_END), np.log(relative)) @ state["eta_loop"])
 
 
 UNCERTAINTY_CURVES = LoadCurves(
@@ -101,7 +105,7 @@ UNCERTAINTY_CURVES = LoadCurves(
             Variable(
                 "loss_factor",
                 "1",
-                f"of a loop under a shear of {LOOP_SHEAR_FORCE_RATIO:g} times the bolts' force",
+                f"of a loop under a shear of {LOOP_SHEAR_OVER_BOLT_FORCE:g} times the bolts' force",
                 0.1,
             ),
             loss_factor,

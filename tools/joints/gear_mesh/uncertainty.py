@@ -8,7 +8,7 @@ from jointfmu.joints.gear_mesh.spring import MeshParameters
 
 from ...studies.uncertainty.curves import LoadCurves
 
-RAMP_END_FORCE_RATIO = 0.05
+RAMP_END_OVER_TABLE_END_ANGLE = 0.05
 """Angle at the default end of the load ramp, over `largest_table_angle` [1]."""
 
 
@@ -29,7 +29,7 @@ UNCERTAINTY_CURVES = LoadCurves(
     model="GearMesh",
     load=KIND.variables["phi1"],
     outputs=tuple(KIND.variables[name] for name in ("K", "f")),
-    default_end=lambda mesh: RAMP_END_FORCE_RATIO * float(largest_table_angle(mesh)),
+    default_end=lambda mesh: RAMP_END_OVER_TABLE_END_ANGLE * float(largest_table_angle(mesh)),
     max_load=largest_table_angle,
     other_inputs=lambda mesh: {"phi2": first_contact_angle(mesh)},
 )

@@ -51,8 +51,8 @@ ratio."""
 ACTUATOR_SERIES = ("CHA", "FHA", "RSF")
 """Series with a built-in motor; their published torques are not those of the gear alone."""
 HIGH_TORQUE_SERIES = ("CSG", "SHG")
-"""Series with higher torques than the others, by the factor HIGH_TORQUE_SERIES_RATIO."""
-HIGH_TORQUE_SERIES_RATIO = 1.3
+"""Series with higher torques than the others, by the factor HIGH_TORQUE_OVER_STANDARD_SERIES."""
+HIGH_TORQUE_OVER_STANDARD_SERIES = 1.3
 """Torque of a CSG drive over that of a CSF drive of the same size and ratio [1]."""
 SERIES_WITH_PUBLISHED_TORQUES = ("CSG", "SHG", "HFUC", "HFUS")
 """Series with published torques, in the order in which they serve as estimates for other series."""
@@ -195,10 +195,10 @@ def _rated_and_peak_torque(
                 kind, ratio_to_series = "catalogue", 1.0
                 text = f"{name}: {row['source']}"
             elif other in HIGH_TORQUE_SERIES and series not in HIGH_TORQUE_SERIES:
-                kind, ratio_to_series = "estimate", 1.0 / HIGH_TORQUE_SERIES_RATIO
+                kind, ratio_to_series = "estimate", 1.0 / HIGH_TORQUE_OVER_STANDARD_SERIES
                 text = (
-                    f"that of {name} over {HIGH_TORQUE_SERIES_RATIO:g}: the catalogue gives the CSG 30 % "
-                    "more than the CSF"
+                    f"that of {name} over {HIGH_TORQUE_OVER_STANDARD_SERIES:g}: the catalogue gives the CSG "
+                    "30 % more than the CSF"
                 )
             else:
                 kind, text, ratio_to_series = "estimate", f"that of {name}", 1.0

@@ -20,7 +20,7 @@ _FLANGE_INPUT_NAMES = ("phi1", "w1", "phi2", "w2")
 """Names of the inputs with angles and speeds of the flanges."""
 _TORQUE_OUTPUT_NAMES = ("tau", "tau1")
 """Names of the outputs with the torque of the drive and of the motor."""
-_DEVELOPED_FRICTION_ROTATION_RATIO = 20.0
+_DEVELOPED_FRICTION_ROTATION_OVER_PRESLIDING = 20.0
 """Rotation of the wave generator over `presliding` [1] after which friction is fully developed."""
 _STEADY_PARAMETERS: Mapping[str, float] = {
     "hysteresis_loss": 0.0,
@@ -120,7 +120,7 @@ class DriveTestRig:
         self.drive.do_step(float(self.step_count), 1.0)
         self.step_count += 1
         self.motor_angle += math.copysign(
-            _DEVELOPED_FRICTION_ROTATION_RATIO * self.presliding_rotation, speed
+            _DEVELOPED_FRICTION_ROTATION_OVER_PRESLIDING * self.presliding_rotation, speed
         )
         self.drive.set_inputs(self.motor_angle, speed, self.motor_angle / ratio + wind_up, speed / ratio)
         return -self.drive.get_outputs()[1]
@@ -183,7 +183,7 @@ def make_test_rig(model: Model, file: ParameterFile) -> DriveTestRig:
     return DriveTestRig(drive, steady.values.ratio, steady.values.presliding, drive.get_outputs()[2])
 
 
-LOST_MOTION_TORQUE_RATIO = 0.04
+LOST_MOTION_TORQUE_OVER_RATED = 0.04
 """Torque over rated torque [1], positive and negative, at which catalogues state lost motion."""
 
 
@@ -194,7 +194,7 @@ def hysteresis_loss(spring: HarmonicDriveSpring) -> float:
     return unloading - loading
 
 
-def lost_motion(spring: HarmonicDriveSpring, torque_ratio: float = LOST_MOTION_TORQUE_RATIO) -> float:
+def lost_motion(spring: HarmonicDriveSpring, torque_ratio: float = LOST_MOTION_TORQUE_OVER_RATED) -> float:
     """Lost motion [rad]: change of the mean angle of both branches between -4 % and +4 % of the rated torque.
 
     The branches are those of the loop up to the rated torque.

@@ -342,7 +342,7 @@ def add_friction_estimates(
     text = " and ".join(f"{maker} ({', '.join(names)})" for maker, names in makers.items())
     text += ", scaled by size and ratio"
 
-    def add_estimate(column: str, value: float, *interval_ends: float) -> None:
+    def add_column_estimate(column: str, value: float, *interval_ends: float) -> None:
         """Add an estimated number to the catalogue entry of a drive.
 
         A column for which the catalogue has a value is left unchanged.
@@ -350,11 +350,11 @@ def add_friction_estimates(
         interval = min(interval_ends), max(interval_ends)
         numbers.setdefault(column, SourcedNumber(value, "estimate", text, interval=interval))
 
-    add_estimate("starting_torque", *law.starting_torque)
+    add_column_estimate("starting_torque", *law.starting_torque)
     start = numbers["starting_torque"].value
-    add_estimate("running_torque", *(start + x for x in law.viscous_torque))
-    add_estimate("back_driving_torque", *(ratio * start / (1.0 - x) for x in law.load_loss_back))
+    add_column_estimate("running_torque", *(start + x for x in law.viscous_torque))
+    add_column_estimate("back_driving_torque", *(ratio * start / (1.0 - x) for x in law.load_loss_back))
     if rated := numbers.get("rated_torque"):
         idle = 1.0 + numbers["running_torque"].value * ratio / rated.value
-        add_estimate("efficiency", *(1.0 / (idle + x) for x in law.load_loss))
+        add_column_estimate("efficiency", *(1.0 / (idle + x) for x in law.load_loss))
     return CatalogueEntry(entry.name, numbers)

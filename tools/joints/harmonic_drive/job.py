@@ -174,7 +174,7 @@ def torque_angle_chart(ramp_result: RampResult) -> Panel:
     return Panel("Torque over wind-up", "wind-up [arcmin]", "torque [N m]", [Series("torque", *both)])
 
 
-VIBRATION_TORQUE_RATIOS = (0.0, 0.1, 0.2, 0.4, 0.7, 1.0)
+VIBRATION_TORQUES_OVER_RATED = (0.0, 0.1, 0.2, 0.4, 0.7, 1.0)
 """Torques over the rated torque [1] of the simulated free vibrations."""
 
 
@@ -182,7 +182,7 @@ def _vibration_torques(path: Path, parameters: Mapping[str, float]) -> list[floa
     """Mean torques [N.m] at which free vibrations of a drive are simulated: zero to rated torque."""
     with Slave(path, parameters, (), ("rated_torque",)) as drive:
         (rated,) = drive.get_outputs()
-    return [share * rated for share in VIBRATION_TORQUE_RATIOS]
+    return [share * rated for share in VIBRATION_TORQUES_OVER_RATED]
 
 
 def _rest_state(path: Path, torque: float, parameters: Mapping[str, float]) -> WorkingPoint:

@@ -38,7 +38,7 @@ FIXED_PARTS: Mapping[str, str] = {
 """{fixed part of the drive: effect on the ratio}."""
 MIN_EFFICIENCY = 0.1
 """Least efficiency [1] at rated torque and 2000 rev/min: drives of the catalogue have 0.5 to 0.85."""
-PEAK_TORQUE_RATIO = 4.0
+TABLE_END_OVER_RATED_TORQUE = 4.0
 """Largest torque of the table (max_torque) over rated torque [1], if no repeated peak torque is known.
 
 Catalogue drives have about this ratio."""
@@ -226,14 +226,16 @@ def _make_joint_with_catalogue_law(
     """Make a drive with the three lines of the catalogue as stiffness (law `catalogue`)."""
     from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 
-    from .efficiency import LOST_MOTION_TORQUE_RATIO
+    from .efficiency import LOST_MOTION_TORQUE_OVER_RATED
     from .fit import catalogue
 
     _catalogue_row(sourced_numbers)  # raises ValueError for an implausible row
     rated, peak = sourced_numbers["rated_torque"].value, sourced_numbers.pop("peak_torque", None)
     if peak is None:
         peak = SourcedNumber(
-            PEAK_TORQUE_RATIO * rated, "estimate", f"{PEAK_TORQUE_RATIO:g} times rated_torque"
+            TABLE_END_OVER_RATED_TORQUE * rated,
+            "estimate",
+            f"{TABLE_END_OVER_RATED_TORQUE:g} times rated_torque",
         )
     sourced_numbers["max_torque"] = peak
     facts = {}
@@ -250,7 +252,7 @@ def _make_joint_with_catalogue_law(
     sourced_numbers |= friction_numbers
     file = catalogue.make_drive_with_catalogue_law(drive_name, sourced_numbers)
     spring = HarmonicDriveSpring.tabulate(file.values)
-    facts |= wind_up_facts(spring, LOST_MOTION_TORQUE_RATIO)
+    facts |= wind_up_facts(spring, LOST_MOTION_TORQUE_OVER_RATED)
     if printed_angle:
         computed_angle, unit, text = facts["lost_motion"]
         relation = "below" if computed_angle < printed_angle.value else "above"

@@ -3,7 +3,7 @@
 Makers print the torsional rigidity K, the lost motion (between -3 % and +3 % of the rated torque, midway in
 the hysteresis loop), and the angle between the branches at zero torque, called backlash. The midline is
 
-    phi(T) = T/K + lost_motion/2 tanh(T/T_p),   T_p = PLAY_WIDTH_RATIO rated_torque.
+    phi(T) = T/K + lost_motion/2 tanh(T/T_p),   T_p = PLAY_OVER_RATED_TORQUE rated_torque.
 
 The backlash is the parameter `hysteresis_loss`. The parameter `lost_motion` is found so that the computed
 loop has the printed lost motion. The parameter file is one of a harmonic drive with the law `catalogue`: the
@@ -24,19 +24,19 @@ from .friction import FRICTION_COLUMNS
 from .new import (
     DAMPING_TIME,
     FRICTION_OPTIONS,
-    PEAK_TORQUE_RATIO,
+    TABLE_END_OVER_RATED_TORQUE,
     check_efficiency,
     read_friction_parameters,
     set_temperature,
     wind_up_facts,
 )
 
-LOST_MOTION_TORQUE_RATIO = 0.03
+LOST_MOTION_TORQUE_OVER_RATED = 0.03
 """Torque over rated torque [1], positive and negative, at which makers of cycloidal drives state lost
 motion."""
 LOST_MOTION_TOLERANCE = 1e-9
 """Relative tolerance [1] of the parameter `lost_motion`: far below the two digits that makers print."""
-RIGIDITY_CHANGE_TORQUE_RATIO = 0.5
+RIGIDITY_CHANGE_OVER_RATED_TORQUE = 0.5
 """Torque over rated torque [1] at which the first torsional rigidity ends and the second begins."""
 
 
@@ -58,7 +58,9 @@ def _make_joint(options: DrawingOptions) -> NewJoint:
         raise ValueError(
             f"--rigidity = {texts[1]!r} above 50 % of rated torque is below {texts[0]!r}: a drive stiffens"
         )
-    peak = SourcedNumber(PEAK_TORQUE_RATIO * rated, "estimate", f"{PEAK_TORQUE_RATIO:g} times rated_torque")
+    peak = SourcedNumber(
+        TABLE_END_OVER_RATED_TORQUE * rated, "estimate", f"{TABLE_END_OVER_RATED_TORQUE:g} times rated_torque"
+    )
     if options["peak_torque"] is not None:
         peak = SourcedNumber(parse_value("peak_torque", options["peak_torque"]), "catalogue", source)
         if peak.value < rated:
@@ -73,9 +75,9 @@ def _make_joint(options: DrawingOptions) -> NewJoint:
         "K2": SourcedNumber(high, "catalogue", source),
         "K3": SourcedNumber(high, "catalogue", source),
         "T1": SourcedNumber(
-            RIGIDITY_CHANGE_TORQUE_RATIO * rated,
+            RIGIDITY_CHANGE_OVER_RATED_TORQUE * rated,
             "derived",
-            f"{RIGIDITY_CHANGE_TORQUE_RATIO:.0%} of rated torque",
+            f"{RIGIDITY_CHANGE_OVER_RATED_TORQUE:.0%} of rated torque",
         ),
         "T2": SourcedNumber(rated, "derived", "rated torque"),
         "d": SourcedNumber(
@@ -117,7 +119,7 @@ def _set_lost_motion(parameter_file: ParameterFile, lost_motion_text: str, sourc
     def excess(play: float) -> float:
         """Computed lost motion less the printed one [rad], at a parameter `lost_motion` [rad]."""
         drive = replace(parameter_file.values, lost_motion=play)
-        return lost_motion(HarmonicDriveSpring.tabulate(drive), LOST_MOTION_TORQUE_RATIO) - printed
+        return lost_motion(HarmonicDriveSpring.tabulate(drive), LOST_MOTION_TORQUE_OVER_RATED) - printed
 
     if (elastic := excess(0.0)) > 0.0:
         lowest = (elastic + printed) / RAD_PER_ARCMIN
@@ -137,7 +139,7 @@ def _drive_facts(joint: NewJoint) -> dict[str, tuple[float, str, str]]:
     """Facts about a cycloidal drive: computed wind-up at rated torque, lost motion and hysteresis loss."""
     drive = joint.file.values
     spring = HarmonicDriveSpring.tabulate(drive)
-    facts = wind_up_facts(spring, LOST_MOTION_TORQUE_RATIO)
+    facts = wind_up_facts(spring, LOST_MOTION_TORQUE_OVER_RATED)
     if drive.hysteresis_loss:
         text = "computed angle between the branches at zero torque, after rated torque"
         facts["hysteresis_loss"] = (hysteresis_loss(spring), "rad", text)
@@ -175,7 +177,8 @@ NEW_CYCLOIDAL_DRIVE_COMMAND = NewJointCommand(
         ),
         Option(
             "peak_torque",
-            f"largest permissible torque at the output [N.m] (default: {PEAK_TORQUE_RATIO:g} times rated)",
+            f"largest permissible torque at the output [N.m] (default: {TABLE_END_OVER_RATED_TORQUE:g} times "
+            "rated)",
             "T",
         ),
         *FRICTION_OPTIONS,

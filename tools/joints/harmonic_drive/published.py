@@ -60,7 +60,11 @@ def kogut_etsion_constant(drive: HarmonicDriveParameters, product: str, stage: i
     stage   : 1 or 2
     """
     if product == "area":
-        return float((kogut_etsion.SECOND_STAGE_AREA_RATIO, kogut_etsion.PLASTIC_AREA_RATIO)[stage - 1])
+        return float(
+            (kogut_etsion.SECOND_STAGE_AREA_OVER_FIRST_YIELD, kogut_etsion.PLASTIC_AREA_OVER_FIRST_YIELD)[
+                stage - 1
+            ]
+        )
     powers = kogut_etsion.eliminate_deformation(
         (kogut_etsion.FIRST_STAGE, kogut_etsion.SECOND_STAGE)[stage - 1]
     )
@@ -72,7 +76,7 @@ def plastic_onset_pressure(drive: HarmonicDriveParameters, nu: float) -> float:
 
     nu : Poisson's ratio [1]
     """
-    stage, w = kogut_etsion.SECOND_STAGE, kogut_etsion.PLASTIC_DEFORMATION_RATIO
+    stage, w = kogut_etsion.SECOND_STAGE, kogut_etsion.PLASTIC_DEFORMATION_OVER_FIRST_YIELD
     load_per_area = stage.load_factor * w**stage.load_exponent / (stage.area_factor * w**stage.area_exponent)
     return float(2.0 / 3.0 * hardness_coefficient(nu) * load_per_area)
 
@@ -91,12 +95,12 @@ def shear_over_friction(drive: HarmonicDriveParameters, stage: str) -> float:
     load, area = {
         "elastic": (1.0, 1.0),
         "first": (
-            first.load_factor * kogut_etsion.SECOND_STAGE_AREA_RATIO**first.load_exponent,
-            kogut_etsion.SECOND_STAGE_AREA_RATIO,
+            first.load_factor * kogut_etsion.SECOND_STAGE_AREA_OVER_FIRST_YIELD**first.load_exponent,
+            kogut_etsion.SECOND_STAGE_AREA_OVER_FIRST_YIELD,
         ),
         "second": (
-            second.load_factor * kogut_etsion.PLASTIC_AREA_RATIO**second.load_exponent,
-            kogut_etsion.PLASTIC_AREA_RATIO,
+            second.load_factor * kogut_etsion.PLASTIC_AREA_OVER_FIRST_YIELD**second.load_exponent,
+            kogut_etsion.PLASTIC_AREA_OVER_FIRST_YIELD,
         ),
     }[stage]
     pressure = 2.0 / 3.0 * hardness_coefficient(law.side1.nu) * law.hardness * load / area

@@ -39,7 +39,7 @@ LUBRICANT_TEMPERATURES = (263.15, REFERENCE_TEMPERATURE, 333.15)
 """Temperatures of the lubricant [K]: lower limit of catalogues, reference temperature, and a warm drive."""
 _CURVE_POINTS = 41
 """Number of points of a plotted curve [1]."""
-_MAX_BACK_DRIVING_TORQUE_RATIO = 10.0
+_MAX_BACK_DRIVING_OVER_RATED_TORQUE = 10.0
 """Torque at which the search for the back-driving torque ends, over the rated torque [1]."""
 
 
@@ -56,11 +56,11 @@ def friction_figures(load_history: LoadHistory) -> list[Figure]:
         Series(f"{rpm} rev/min", loads, [bench.efficiency(rpm * math.pi / 30.0, x) for x in loads])
         for rpm in MOTOR_SPEEDS
     ]
-    back_driving_torque = bench.back_driving_torque(_MAX_BACK_DRIVING_TORQUE_RATIO * drive.rated_torque)
+    back_driving_torque = bench.back_driving_torque(_MAX_BACK_DRIVING_OVER_RATED_TORQUE * drive.rated_torque)
     torque_text = (
         f"{back_driving_torque:.4g} N m"
         if math.isfinite(back_driving_torque)
-        else f"none up to {_MAX_BACK_DRIVING_TORQUE_RATIO * drive.rated_torque:g} N m"
+        else f"none up to {_MAX_BACK_DRIVING_OVER_RATED_TORQUE * drive.rated_torque:g} N m"
     )
     text = (
         f"Starting torque of the motor without load: {bench.starting_torque():.4g} N m. Torque at the output "
@@ -195,7 +195,7 @@ def _compute_friction_value(
         return test_rig.motor_torque(CATALOGUE_MOTOR_SPEED, 0.0)
     if column == "efficiency":
         return test_rig.efficiency(CATALOGUE_MOTOR_SPEED, sourced_numbers["rated_torque"].value)
-    return test_rig.back_driving_torque(_MAX_BACK_DRIVING_TORQUE_RATIO * sourced_numbers[column].value)
+    return test_rig.back_driving_torque(_MAX_BACK_DRIVING_OVER_RATED_TORQUE * sourced_numbers[column].value)
 
 
 REPORT_FIGURES = {"HarmonicDriveSpring": friction_figures}

@@ -35,7 +35,7 @@ from .load_history import LoadHistory
 
 _STIFFNESS_UNITS = ("N/m", "N.m/rad")
 """SI units of stiffnesses."""
-_CONSTANT_STIFFNESS_RATIO = 0.02
+_CONSTANT_STIFFNESS_RELATIVE_CHANGE = 0.02
 """Relative change of the stiffness over the load ramp [1], below which it is called constant."""
 
 
@@ -85,7 +85,7 @@ def _describe_stiffness(load_history: LoadHistory) -> str:
     columns = load_history.compute_ramp()
     first, last = (float(columns[name][i]) for i in (0, -1))
     end = f"{over} = {_format_value(float(columns[over][-1]), units[over])}"
-    if abs(last - first) <= _CONSTANT_STIFFNESS_RATIO * abs(last):
+    if abs(last - first) <= _CONSTANT_STIFFNESS_RELATIVE_CHANGE * abs(last):
         return f"The stiffness {name} is {_format_value(last, units[name])}, nearly constant up to {end}."
     start = _format_value(first, units[name]) if first > 0.0 else "zero"
     verb = "rises" if last > first else "falls"

@@ -14,11 +14,11 @@ _RAMP_POINTS = 101
 """Number of points of the load ramp [1]."""
 _LOAD_CYCLE = CyclicPath(points=80)
 """Load cycle: points per cycle, shape, number of cycles."""
-AMPLITUDE_RATIOS = (0.25, 0.5, 1.0)
+AMPLITUDES_OVER_LARGEST = (0.25, 0.5, 1.0)
 """Amplitudes of the load cycles over the largest amplitude [1]."""
 _MAX_LOAD_DOUBLINGS, _LAW_LIMIT_BISECTIONS = 10, 12
 """Doublings of the load in the search for the end of the law, and bisections to locate it."""
-_GROSS_SLIP_RATIO = 0.95
+_SLIPPING_OVER_GROSS_SLIP_FORCE = 0.95
 """Force over the force at gross slip [1], above which the joint counts as slipping."""
 
 
@@ -64,7 +64,7 @@ class LoadHistory:
         largest = self._largest_amplitude(output)
         results = [
             self._compute_along_path(loop.input_name, swing.input_values(a * largest), driven | outputs)
-            for a in AMPLITUDE_RATIOS
+            for a in AMPLITUDES_OVER_LARGEST
         ]
         return loops_from_results(results, loop.input_name, output, swing)
 
@@ -85,12 +85,16 @@ class LoadHistory:
             )
 
         end = force_range(largest)
-        if _GROSS_SLIP_RATIO * force_range(2.0 * largest) > end:
+        if _SLIPPING_OVER_GROSS_SLIP_FORCE * force_range(2.0 * largest) > end:
             return largest
         low, high = 0.0, largest
         for _ in range(_LAW_LIMIT_BISECTIONS):
             middle = 0.5 * (low + high)
-            low, high = (low, middle) if force_range(middle) > _GROSS_SLIP_RATIO * end else (middle, high)
+            low, high = (
+                (low, middle)
+                if force_range(middle) > _SLIPPING_OVER_GROSS_SLIP_FORCE * end
+                else (middle, high)
+            )
         return min(largest, float(f"{2.0 * high:.2g}"))
 
     def _compute_along_path(self, name: str, points: Array, units: dict[str, str]) -> RampResult:

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from jointfmu_fmu_src.proof.standard import MIN_SCALE_RATIO
+from jointfmu_fmu_src.proof.standard import MIN_SCALE_OVER_NOMINAL
 
 from ..host import Instance, open_instance, read_description
 from .task import ExperimentTask, OutputRows, make_output_reader
@@ -159,12 +159,14 @@ class _ExchangeSimulation:
             self.instance.set_values({name: value})
 
     def _write_state_nominals(self, solver_array: object, state_count: int) -> None:
-        """Write the nominal values of the states times MIN_SCALE_RATIO; below these, tolerances are absolute.
+        """Write the nominal values of the states times MIN_SCALE_OVER_NOMINAL.
+
+        Below these values, tolerances are absolute.
 
         solver_array, state_count : array of the solver to be filled, and its length
         """
         self.fmu.getNominalsOfContinuousStates(solver_array, state_count)
-        np.ctypeslib.as_array(solver_array, (state_count,))[:] *= MIN_SCALE_RATIO
+        np.ctypeslib.as_array(solver_array, (state_count,))[:] *= MIN_SCALE_OVER_NOMINAL
 
     def _c_callback(self, name: str) -> Callable[..., None]:
         """Make a solver callback of a C function of the FMU; its first failure is kept in `first_failure`.

@@ -6,7 +6,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from jointfmu_fmu_src.proof.standard import MIN_SCALE_RATIO, MODEL_EXCHANGE, SOLVER_TOLERANCE_RATIO
+from jointfmu_fmu_src.proof.standard import (
+    MIN_SCALE_OVER_NOMINAL,
+    MODEL_EXCHANGE,
+    SOLVER_OVER_EXPERIMENT_TOLERANCE,
+)
 
 from jointfmu.quantity import Array
 
@@ -74,7 +78,7 @@ class ExperimentPlan:
         values |= {
             "times": times.tolist(),
             "outputs": outputs,
-            "tolerance": SOLVER_TOLERANCE_RATIO * _find_tolerance(experiment),
+            "tolerance": SOLVER_OVER_EXPERIMENT_TOLERANCE * _find_tolerance(experiment),
         }
         if experiment.references:
             values["comparison_times"] = experiment.references.time.tolist()
@@ -106,7 +110,7 @@ class ExperimentPlan:
         points = []
         for column, (name, reference) in zip(table.T, expected.columns.items(), strict=True):
             y, y_ref = np.interp(t, times, column), reference[compared]
-            size = np.maximum(np.abs(y_ref), MIN_SCALE_RATIO * self.nominal_values[name])
+            size = np.maximum(np.abs(y_ref), MIN_SCALE_OVER_NOMINAL * self.nominal_values[name])
             allowed = tolerance * np.broadcast_to(self.experiment.output_scales.get(name, size), y_ref.shape)
             with np.errstate(invalid="ignore"):
                 error_ratio = np.where(np.isfinite(y), np.abs(y - y_ref) / allowed, np.inf)

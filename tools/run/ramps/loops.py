@@ -23,9 +23,9 @@ DEFAULT_POINTS_PER_CYCLE, DEFAULT_CYCLE_COUNT = 200, 2
 MIN_POINTS_PER_CYCLE, MAX_POINTS_PER_CYCLE = 8, 1_000_000
 MAX_CYCLE_COUNT = 1000
 """Largest number of load cycles [1]."""
-MAX_AMPLITUDE_RATIO = 1e4
+MAX_AMPLITUDE_OVER_NOMINAL = 1e4
 """Largest amplitude over the nominal value of the input [1]: 10 mm of a relative displacement."""
-WORK_ROUND_OFF_RATIO = 1e-12
+WORK_ROUND_OFF_OVER_BOX_AREA = 1e-12
 """Work over the area of the loop's bounding box [1] below which the work is round-off."""
 ENERGY_UNIT = units.base_exponents("J")
 """Exponents of the SI base units of the joule."""
@@ -101,7 +101,9 @@ class HysteresisLoop:
         """Energy loss [J] of the last cycle, by the trapezoidal rule; 0 if it is round-off."""
         motion, force = self._last_cycle
         work = float(np.sum(0.5 * (force[1:] + force[:-1]) * np.diff(motion)))
-        return work if abs(work) > WORK_ROUND_OFF_RATIO * float(np.ptp(motion) * np.ptp(force)) else 0.0
+        return (
+            work if abs(work) > WORK_ROUND_OFF_OVER_BOX_AREA * float(np.ptp(motion) * np.ptp(force)) else 0.0
+        )
 
     def compute_results(self) -> dict[str, float]:
         """Results of the loop: {name: value}.
@@ -232,7 +234,7 @@ def _check_amplitudes(description: "ModelDescription", input_name: str, amplitud
     for variable in description.modelVariables:
         if variable.name == input_name and variable.nominal and variable.unit:
             nominal = float(variable.nominal)
-            largest = MAX_AMPLITUDE_RATIO * nominal
+            largest = MAX_AMPLITUDE_OVER_NOMINAL * nominal
             for amplitude in amplitudes:
                 if amplitude > largest:
                     raise ValueError(

@@ -369,7 +369,7 @@ def _interface_table(p: Parameters, pressure: float) -> dict[str, float]:
     }
 
 
-def _catalogue(p: Parameters, wind_up: float) -> dict[str, float]:
+def _catalogue_drive(p: Parameters, wind_up: float) -> dict[str, float]:
     """Torque [N.m] and stiffness [N.m/rad] of a catalogue drive at a wind-up [rad]."""
     first = p["T1"] / p["K1"]
     second = first + (p["T2"] - p["T1"]) / p["K2"]
@@ -388,7 +388,7 @@ def _catalogue(p: Parameters, wind_up: float) -> dict[str, float]:
     return {"wind_up": wind_up, "tau": torque, "K_WTS": stiffness(wind_up)}
 
 
-def _table(p: Parameters, wind_up: float) -> dict[str, float]:
+def _measured_drive(p: Parameters, wind_up: float) -> dict[str, float]:
     """Torque [N.m] and stiffness [N.m/rad] of a drive with a measured torque-angle table, at a wind-up [rad].
 
     The curve is a quintic Hermite spline. The stiffnesses at the points are those of PCHIP; where it stays
@@ -502,8 +502,8 @@ _CASES: Sequence[_Case] = (
     ("roughness", _roughness, _ROUGHNESS, (1e4, 1e6, 1e8)),
     ("roughness", _roughness, _ROUGHNESS | {"slope": 0.02}, (1e6, 1e8)),
     ("table", _interface_table, _INTERFACE_TABLE, (1e4, 3e5, 8e5, 2e6, 1e7, 5e7)),
-    ("catalogue", _catalogue, _CATALOGUE, (2e-4, 4.2e-4, 9e-4, 1.2e-3, 2e-3)),
-    ("table", _table, _TABLE, (2.2e-4, 3e-4, 9e-4, 1.2e-3, 1.5e-3)),
+    ("catalogue", _catalogue_drive, _CATALOGUE, (2e-4, 4.2e-4, 9e-4, 1.2e-3, 2e-3)),
+    ("table", _measured_drive, _TABLE, (2.2e-4, 3e-4, 9e-4, 1.2e-3, 1.5e-3)),
 )
 """(law, function, parameters, arguments of the function) of each case; every choice of a law has one."""
 _HEAD = """\

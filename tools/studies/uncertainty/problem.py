@@ -20,7 +20,7 @@ from .worker import LOAD_INTERVAL_MEANING, JointRamp, RampEvaluator
 
 INTERVAL_SETTING = "interval"
 """Setting that stands for the interval stated in the parameter file: its range, or the text of its source."""
-_INPUTS_PREFIX = "inputs."
+_INPUTS_SECTION_PREFIX = "inputs."
 """Prefix of the names of start values of inputs in a parameter file."""
 _INTERVAL_PATTERN = re.compile(r"\binterval ([-+.\de]+) to ([-+.\de]+)")
 """Interval in the text of a source: its two ends."""
@@ -90,7 +90,7 @@ def state_problem(
         allowed = ", ".join(name for name in [*declared, curves.load.name] if name in settable)
         raise ValueError(f"unknown name {unknown[0]!r}, allowed are {allowed}")
     stated = {name for name in file.ranges if name in base}
-    if _INPUTS_PREFIX + curves.load.name in file.ranges and ramp_end is None:
+    if _INPUTS_SECTION_PREFIX + curves.load.name in file.ranges and ramp_end is None:
         stated.add(curves.load.name)
     settings = dict.fromkeys(sorted(stated), INTERVAL_SETTING) | dict(settings)
     settings = {
@@ -138,7 +138,7 @@ def _load_interval(curves: LoadCurves, file: ParameterFile) -> str:
 
     Raises ValueError if the file states no range for the start value of the load, or if the joint loses all.
     """
-    name = _INPUTS_PREFIX + curves.load.name
+    name = _INPUTS_SECTION_PREFIX + curves.load.name
     if name not in file.ranges:
         raise ValueError(f"{curves.load.name} = {INTERVAL_SETTING}: the file states no range of {name}")
     loss = curves.load_loss(file.values)
@@ -160,7 +160,7 @@ def resolve_interval(name: str, value: object, file: ParameterFile) -> object:
     """
     if value != INTERVAL_SETTING:
         return value
-    for entry in (name, _INPUTS_PREFIX + name):
+    for entry in (name, _INPUTS_SECTION_PREFIX + name):
         if entry in file.ranges:
             return "{!r}..{!r}".format(*file.ranges[entry])
     source = file.sources.get(name, "")

@@ -67,19 +67,25 @@ class Bands:
 
 
 def compute_bands(
-    problem: UncertaintyProblem, points: Array, execution: Execution = IN_MEMORY_EXECUTION
+    uncertainty_problem: UncertaintyProblem, points: Array, execution: Execution = IN_MEMORY_EXECUTION
 ) -> Bands:
     """Bands (distribution along the ramp) of all outputs, from points (n, d) of the unit cube.
 
     Raises RuntimeError if the law refuses all samples; ValueError, RuntimeError as `evaluate_runs`.
     """
-    first = problem.evaluator.run(-1, problem.settings)
+    first = uncertainty_problem.evaluator.run(-1, uncertainty_problem.settings)
     if "error" in first:
-        raise ValueError(f"{problem.title}: without samples of its parameters: {first['error']}")
-    nominal = {name: np.asarray(first["columns"][name]) for name in problem.units}
-    runs = problem.list_runs(points)
-    samples = evaluate_runs(problem.evaluator, runs, problem.units, problem.loads.size, execution)
-    refused, accepted = summarise_refusals(problem, points, samples), samples.accepted
+        raise ValueError(f"{uncertainty_problem.title}: without samples of its parameters: {first['error']}")
+    nominal = {name: np.asarray(first["columns"][name]) for name in uncertainty_problem.units}
+    runs = uncertainty_problem.list_runs(points)
+    samples = evaluate_runs(
+        uncertainty_problem.evaluator,
+        runs,
+        uncertainty_problem.units,
+        uncertainty_problem.loads.size,
+        execution,
+    )
+    refused, accepted = summarise_refusals(uncertainty_problem, points, samples), samples.accepted
     if not np.any(accepted):
         raise RuntimeError(f"all {len(points)} samples are rejected; the first: {refused.reason}")
     statistics = {
@@ -87,14 +93,14 @@ def compute_bands(
         for name, value in samples.outputs.items()
     }
     return Bands(
-        loads=problem.loads,
+        loads=uncertainty_problem.loads,
         quantiles={name: value[2:] for name, value in statistics.items()},
         mean={name: value[0] for name, value in statistics.items()},
         standard_deviation={name: value[1] for name, value in statistics.items()},
         nominal=nominal,
         sampled_outputs=samples,
         refused_samples=refused,
-        units=problem.units,
+        units=uncertainty_problem.units,
     )
 
 
@@ -110,20 +116,22 @@ def _statistics(row: SinglePrecisionArray, accepted: Mask) -> Array:
     return np.array([values.mean(), values.std(), *np.interp(positions, np.arange(values.size), values)])
 
 
-def summarise_refusals(problem: UncertaintyProblem, points: Array, samples: SampledOutputs) -> RefusedSamples:
+def summarise_refusals(
+    uncertainty_problem: UncertaintyProblem, points: Array, samples: SampledOutputs
+) -> RefusedSamples:
     """Summary of the samples that the law refuses: their number, and the first one with the error message."""
     if not samples.errors:
         return RefusedSamples(0, {}, "")
     first, reason = next(iter(samples.errors.items()))
-    example = draw_samples(problem.uncertain_parameters, points[first : first + 1])
+    example = draw_samples(uncertainty_problem.uncertain_parameters, points[first : first + 1])
     return RefusedSamples(
         len(samples.errors), {name: float(value[0]) for name, value in example.items()}, reason
     )
 
 
-def sample_designs(problem: UncertaintyProblem, count: int, seed: int) -> tuple[Array, Array]:
+def sample_designs(uncertainty_problem: UncertaintyProblem, count: int, seed: int) -> tuple[Array, Array]:
     """Two independent sets of points (count, d) of the unit cube: for bands and indices, for indices only."""
-    d = len(problem.uncertain_parameters)
+    d = len(uncertainty_problem.uncertain_parameters)
     both = unit_cube_points(count, 2 * d, seed)
     return both[:, :d], both[:, d:]
 
@@ -190,7 +198,11 @@ def sobol_indices_of(f_A: Array, f_B: Array, f_AB: Array) -> SobolIndices:
 
 
 def compute_sensitivity(
-    problem: UncertaintyProblem, bands: Bands, A: Array, B: Array, execution: Execution = IN_MEMORY_EXECUTION
+    uncertainty_problem: UncertaintyProblem,
+    bands: Bands,
+    A: Array,
+    B: Array,
+    execution: Execution = IN_MEMORY_EXECUTION,
 ) -> Sensitivity:
     """Sobol' indices of all quantities of a joint along the load ramp.
 
@@ -198,19 +210,19 @@ def compute_sensitivity(
     A, B  : two independent sets of points (n, d) of the unit cube, n a power of two
     """
     n, d = A.shape
-    load_indices = np.unique(np.linspace(0, problem.loads.size - 1, MAX_INDEX_LOADS).astype(int))
-    load_indices = load_indices[problem.loads[load_indices] > 0.0]
-    loads = problem.loads[load_indices]
+    load_indices = np.unique(np.linspace(0, uncertainty_problem.loads.size - 1, MAX_INDEX_LOADS).astype(int))
+    load_indices = load_indices[uncertainty_problem.loads[load_indices] > 0.0]
+    loads = uncertainty_problem.loads[load_indices]
     sets = [B]
     for i in range(d):
         mixed = A.copy()
         mixed[:, i] = B[:, i]
         sets.append(mixed)
-    assert isinstance(problem.evaluator, JointRamp)
+    assert isinstance(uncertainty_problem.evaluator, JointRamp)
     found = evaluate_runs(
-        replace(problem.evaluator, load_indices=load_indices),
-        problem.list_runs(np.concatenate(sets)),
-        problem.units,
+        replace(uncertainty_problem.evaluator, load_indices=load_indices),
+        uncertainty_problem.list_runs(np.concatenate(sets)),
+        uncertainty_problem.units,
         loads.size,
         execution,
         SOBOL_RUNS_FILE,
@@ -222,5 +234,5 @@ def compute_sensitivity(
         f = value.astype(np.float64).reshape(loads.size, d + 1, n)
         by_output[name] = sobol_indices_of(f_A, f[:, 0], np.moveaxis(f[:, 1:], 1, 0))
     return Sensitivity(
-        loads, tuple(parameter.name for parameter in problem.uncertain_parameters), by_output, n
+        loads, tuple(parameter.name for parameter in uncertainty_problem.uncertain_parameters), by_output, n
     )

@@ -18,9 +18,13 @@ MAX_TABLE_ROWS = 6
 """Largest number of loads in the printed table [1]."""
 
 
-def select_table_loads(problem: UncertaintyProblem) -> list[float]:
+def select_table_loads(uncertainty_problem: UncertaintyProblem) -> list[float]:
     """Loads above zero of the ramp that the printed table shows."""
-    return [float(load) for load in problem.loads[_select_table_indices(problem.loads)] if load > 0.0]
+    return [
+        float(load)
+        for load in uncertainty_problem.loads[_select_table_indices(uncertainty_problem.loads)]
+        if load > 0.0
+    ]
 
 
 def _select_table_indices(values: Any) -> Any:
@@ -28,12 +32,12 @@ def _select_table_indices(values: Any) -> Any:
     return np.unique(np.linspace(0, values.size - 1, MAX_TABLE_ROWS).astype(int))
 
 
-def format_bands_csv(problem: UncertaintyProblem, bands: Bands) -> str:
+def format_bands_csv(uncertainty_problem: UncertaintyProblem, bands: Bands) -> str:
     """CSV text of the bands: one row for each load; nominal value, mean, standard deviation, quantiles.
 
     Numbers are written without rounding.
     """
-    load = problem.ramped_input
+    load = uncertainty_problem.ramped_input
     heads, values = [(load.name, load.unit)], [bands.loads]
     for name, unit in bands.units.items():
         statistics = (("nominal", bands.nominal), ("mean", bands.mean), ("sd", bands.standard_deviation))
@@ -45,7 +49,9 @@ def format_bands_csv(problem: UncertaintyProblem, bands: Bands) -> str:
     return columns.format_table(heads, values)
 
 
-def as_json(problem: UncertaintyProblem, bands: Bands, sensitivity: Sensitivity | None) -> dict[str, object]:
+def as_json(
+    uncertainty_problem: UncertaintyProblem, bands: Bands, sensitivity: Sensitivity | None
+) -> dict[str, object]:
     """Results of a study as one JSON object: bands, refused samples and Sobol' indices."""
     outputs = {
         name: {
@@ -59,10 +65,12 @@ def as_json(problem: UncertaintyProblem, bands: Bands, sensitivity: Sensitivity 
         }
         for name, unit in bands.units.items()
     }
-    refused, load = bands.refused_samples, problem.ramped_input
+    refused, load = bands.refused_samples, uncertainty_problem.ramped_input
     return {
-        "fmu" if problem.title.endswith(".fmu") else "joint": problem.title,
-        "parameters": {parameter.name: parameter.text for parameter in problem.uncertain_parameters},
+        "fmu" if uncertainty_problem.title.endswith(".fmu") else "joint": uncertainty_problem.title,
+        "parameters": {
+            parameter.name: parameter.text for parameter in uncertainty_problem.uncertain_parameters
+        },
         "load": {"name": load.name, "unit": load.unit, "values": bands.loads.tolist()},
         "samples": bands.sample_count,
         "refused": {
@@ -91,13 +99,15 @@ def _indices_json(sensitivity: Sensitivity) -> dict[str, object]:
     }
 
 
-def format_table(problem: UncertaintyProblem, bands: Bands, sensitivity: Sensitivity | None) -> str:
+def format_table(
+    uncertainty_problem: UncertaintyProblem, bands: Bands, sensitivity: Sensitivity | None
+) -> str:
     """Printed table of a study: bands at a few loads, and Sobol' indices at the end of the ramp."""
     lines = []
     load_indices = _select_table_indices(bands.loads)
     quantile_indices = {q: QUANTILES.index(q) for q in (0.05, 0.5, 0.95)}
     for name in bands.nonzero_outputs:
-        head = f"{problem.ramped_input.name} [{problem.ramped_input.unit}]"
+        head = f"{uncertainty_problem.ramped_input.name} [{uncertainty_problem.ramped_input.unit}]"
         lines.append(f"{name} [{bands.units[name]}]")
         lines.append("".join(f"{x:>16}" for x in (head, "parameter file", "5 %", "50 %", "95 %")))
         for j in load_indices:
@@ -106,9 +116,11 @@ def format_table(problem: UncertaintyProblem, bands: Bands, sensitivity: Sensiti
             lines.append("".join(f"{x:16.5g}" for x in row))
         lines.append("")
     if sensitivity is not None:
-        lines += _indices_table(problem, sensitivity, bands.nonzero_outputs)
-    varied = ", ".join(f"{parameter.name} = {parameter.text}" for parameter in problem.uncertain_parameters)
-    lines.append(f"over {problem.ramped_input.name}: {problem.ramped_input.doc}")
+        lines += _indices_table(uncertainty_problem, sensitivity, bands.nonzero_outputs)
+    varied = ", ".join(
+        f"{parameter.name} = {parameter.text}" for parameter in uncertainty_problem.uncertain_parameters
+    )
+    lines.append(f"over {uncertainty_problem.ramped_input.name}: {uncertainty_problem.ramped_input.doc}")
     lines.append(f"varied: {varied}{'' if bands.has_scatter else ': no output depends on it'}")
     if zero := [name for name in bands.units if name not in bands.nonzero_outputs]:
         lines.append(f"zero at all loads: {', '.join(zero)}")
@@ -120,10 +132,11 @@ def format_table(problem: UncertaintyProblem, bands: Bands, sensitivity: Sensiti
 
 
 def _indices_table(
-    problem: UncertaintyProblem, sensitivity: Sensitivity, outputs: Sequence[str]
+    uncertainty_problem: UncertaintyProblem, sensitivity: Sensitivity, outputs: Sequence[str]
 ) -> list[str]:
     """Lines of a table: Sobol' indices at the end of the load ramp."""
-    load = f"{problem.ramped_input.name} = {sensitivity.loads[-1]:g} {problem.ramped_input.unit}"
+    ramped = uncertainty_problem.ramped_input
+    load = f"{ramped.name} = {sensitivity.loads[-1]:g} {ramped.unit}"
     lines = [f"Sobol' indices at {load}, first order / total, +- 95 % interval"]
     width = max(len(name) for name in sensitivity.parameter_names) + 2
     lines.append(" " * width + "".join(f"{name:>32}" for name in outputs))

@@ -32,11 +32,11 @@ DEFAULT_SOLVER_TOLERANCE = 1e-5
 The references end where results with this and with the solver tolerance differ by more than OUTPUT_TOLERANCE:
 from there the motion is too sensitive to be compared.
 """
-MIN_SCALE_RATIO = 1e-2
+MIN_OUTPUT_SCALE_OVER_NOMINAL = 1e-2
 """Smallest scale of an output's tolerance over the nominal value of the output [1]."""
 SHORT_STEP = 1e-3
 """Short communication step [s]; at most a tenth of the stop time."""
-LONG_STEP_RATIO = 10
+LONG_OVER_SHORT_STEP = 10
 """Long communication step over the short one [1]."""
 STEPS_PER_INTERVAL = 3
 """Integrator steps of model exchange per interval of the system [1]; each is accepted as a load step."""
@@ -44,7 +44,7 @@ MAX_INTEGRATOR_STEPS = 100_000
 """Largest number of integrator steps [1]; longer experiments are cut."""
 ROWS_PER_FILE = 200
 """Approximate number of rows of a result file [1]."""
-JUMP_RATIO = 10.0
+JUMP_OVER_NEIGHBOUR_CHANGE = 10.0
 """Criterion of a jump: change of an output in a fine step over its changes before and after [1].
 
 The change must also exceed OUTPUT_TOLERANCE. A stiffness jumps where the motion reverses.
@@ -86,11 +86,12 @@ def make_proof_files(model: Model, stop: float, interval: float, fmu: Path) -> d
     stop, interval : stop time and interval of the system's experiment [s]
     fmu            : path of the FMU, with all files that are needed to run it
     """
-    step = min(SHORT_STEP, stop / LONG_STEP_RATIO)
+    step = min(SHORT_STEP, stop / LONG_OVER_SHORT_STEP)
     substeps = max(int(np.ceil(STEPS_PER_INTERVAL * step / interval - 1e-6)), 1)
-    count = LONG_STEP_RATIO * max(
+    count = LONG_OVER_SHORT_STEP * max(
         min(
-            int(stop / (LONG_STEP_RATIO * step) + 1e-6), MAX_INTEGRATOR_STEPS // (LONG_STEP_RATIO * substeps)
+            int(stop / (LONG_OVER_SHORT_STEP * step) + 1e-6),
+            MAX_INTEGRATOR_STEPS // (LONG_OVER_SHORT_STEP * substeps),
         ),
         1,
     )
@@ -102,7 +103,7 @@ def make_proof_files(model: Model, stop: float, interval: float, fmu: Path) -> d
             for tolerance in (REFERENCE_SOLVER_TOLERANCE, DEFAULT_SOLVER_TOLERANCE)
         )
         while (difference_row := _find_first_difference(model, results, coarse_results)) < results.time.size:
-            count = (difference_row - 1) // (LONG_STEP_RATIO * substeps) * LONG_STEP_RATIO
+            count = (difference_row - 1) // (LONG_OVER_SHORT_STEP * substeps) * LONG_OVER_SHORT_STEP
             if not count:
                 raise RuntimeError(
                     "its own experiment is too sensitive to the solver tolerance from the start"
@@ -114,12 +115,13 @@ def make_proof_files(model: Model, stop: float, interval: float, fmu: Path) -> d
         }
     scales = _find_scales(model, results)
     smooth = _is_smooth(results, scales)
-    short, long = (f"experiments/{model.title}_{n}_ref.csv" for n in (1, LONG_STEP_RATIO))
+    short, long = (f"experiments/{model.title}_{n}_ref.csv" for n in (1, LONG_OVER_SHORT_STEP))
     members = {
-        path: _result_file(results, smooth, n * substeps) for path, n in ((short, 1), (long, LONG_STEP_RATIO))
+        path: _result_file(results, smooth, n * substeps)
+        for path, n in ((short, 1), (long, LONG_OVER_SHORT_STEP))
     }
     runs = {
-        CO_SIMULATION: [(step, short), (LONG_STEP_RATIO * step, long)],
+        CO_SIMULATION: [(step, short), (LONG_OVER_SHORT_STEP * step, long)],
         MODEL_EXCHANGE: [(fine, short)],
     }
     related = [
@@ -144,11 +146,11 @@ def make_proof_files(model: Model, stop: float, interval: float, fmu: Path) -> d
         version=standard.STANDARD_VERSION,
         own=__version__,
         short=step,
-        long=LONG_STEP_RATIO * step,
+        long=LONG_OVER_SHORT_STEP * step,
         solver=REFERENCE_SOLVER_TOLERANCE,
         fine=fine,
         tolerance=OUTPUT_TOLERANCE,
-        small=MIN_SCALE_RATIO,
+        small=MIN_OUTPUT_SCALE_OVER_NOMINAL,
         near=STEPS_PER_INTERVAL * JUMP_NEIGHBOUR_INTERVALS * fine,
         end=count * step,
         stop=stop,
@@ -160,7 +162,7 @@ def make_proof_files(model: Model, stop: float, interval: float, fmu: Path) -> d
 def _find_scales(model: Model, results: TimeSeries) -> dict[str, float]:
     """{output: scale for its tolerance}: largest absolute value, or a share of the nominal value."""
     return {
-        v.name: max(float(np.abs(results.columns[v.name]).max()), MIN_SCALE_RATIO * v.nominal)
+        v.name: max(float(np.abs(results.columns[v.name]).max()), MIN_OUTPUT_SCALE_OVER_NOMINAL * v.nominal)
         for v in model.outputs
     }
 
@@ -217,7 +219,9 @@ def _is_smooth(results: TimeSeries, scales: Mapping[str, float]) -> np.ndarray:
     for name, column in results.columns.items():
         change = np.abs(np.diff(column))
         neighbour_change = np.maximum(np.append(change[1:], 0.0), np.append(0.0, change[:-1]))
-        jumps |= (change > OUTPUT_TOLERANCE * scales[name]) & (change > JUMP_RATIO * neighbour_change)
+        jumps |= (change > OUTPUT_TOLERANCE * scales[name]) & (
+            change > JUMP_OVER_NEIGHBOUR_CHANGE * neighbour_change
+        )
     near = np.convolve(jumps, np.ones(2 * STEPS_PER_INTERVAL * JUMP_NEIGHBOUR_INTERVALS, dtype=int))[
         STEPS_PER_INTERVAL * JUMP_NEIGHBOUR_INTERVALS - 1 :
     ]

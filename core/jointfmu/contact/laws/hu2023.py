@@ -27,9 +27,9 @@ from ..surface import (
 from . import mindlin
 from .kogut_etsion import (
     FIRST_STAGE,
-    PLASTIC_AREA_RATIO,
+    PLASTIC_AREA_OVER_FIRST_YIELD,
     SECOND_STAGE,
-    SECOND_STAGE_AREA_RATIO,
+    SECOND_STAGE_AREA_OVER_FIRST_YIELD,
     eliminate_deformation,
 )
 
@@ -185,7 +185,11 @@ def corrected_spot_distribution(law: Hu2023) -> SpotDistribution:
     f_ec, H = critical_load(law), law.hardness
     k_ec = f_ec / critical_deformation(law)
     edge = np.log(s_ec / s_min)  # log-area of the end of the elastic regime
-    ends = [edge, edge + np.log(SECOND_STAGE_AREA_RATIO), edge + np.log(PLASTIC_AREA_RATIO)]
+    ends = [
+        edge,
+        edge + np.log(SECOND_STAGE_AREA_OVER_FIRST_YIELD),
+        edge + np.log(PLASTIC_AREA_OVER_FIRST_YIELD),
+    ]
     bounds = [None, *ends]
     stages = [eliminate_deformation(FIRST_STAGE), eliminate_deformation(SECOND_STAGE)]
 

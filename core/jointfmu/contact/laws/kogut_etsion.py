@@ -17,12 +17,12 @@ class PlasticStage(NamedTuple):
 
 
 FIRST_STAGE = PlasticStage(area_factor=0.93, area_exponent=1.136, load_factor=1.03, load_exponent=1.425)
-"""Power laws from first yield to SECOND_STAGE_DEFORMATION_RATIO times its deformation."""
+"""Power laws from first yield to SECOND_STAGE_DEFORMATION_OVER_FIRST_YIELD times its deformation."""
 SECOND_STAGE = PlasticStage(area_factor=0.94, area_exponent=1.146, load_factor=1.40, load_exponent=1.263)
-"""Power laws from there to PLASTIC_DEFORMATION_RATIO times the deformation at first yield."""
-SECOND_STAGE_DEFORMATION_RATIO = 6.0
+"""Power laws from there to PLASTIC_DEFORMATION_OVER_FIRST_YIELD times the deformation at first yield."""
+SECOND_STAGE_DEFORMATION_OVER_FIRST_YIELD = 6.0
 """Deformation w/w_c [1] at the start of the second stage."""
-PLASTIC_DEFORMATION_RATIO = 110.0
+PLASTIC_DEFORMATION_OVER_FIRST_YIELD = 110.0
 """Deformation w/w_c [1] from which on the spot is fully plastic."""
 
 
@@ -51,7 +51,11 @@ def eliminate_deformation(stage: PlasticStage) -> AreaPowerLaws:
     )
 
 
-SECOND_STAGE_AREA_RATIO = FIRST_STAGE.area_factor * SECOND_STAGE_DEFORMATION_RATIO**FIRST_STAGE.area_exponent
+SECOND_STAGE_AREA_OVER_FIRST_YIELD = (
+    FIRST_STAGE.area_factor * SECOND_STAGE_DEFORMATION_OVER_FIRST_YIELD**FIRST_STAGE.area_exponent
+)
 """Area a/a_c = 7.1197 [1] at the start of the second stage."""
-PLASTIC_AREA_RATIO = SECOND_STAGE.area_factor * PLASTIC_DEFORMATION_RATIO**SECOND_STAGE.area_exponent
+PLASTIC_AREA_OVER_FIRST_YIELD = (
+    SECOND_STAGE.area_factor * PLASTIC_DEFORMATION_OVER_FIRST_YIELD**SECOND_STAGE.area_exponent
+)
 """Area a/a_c = 205.38 [1] from which on the spot is fully plastic."""

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...quantity import Number, erf, select
 
-_MAX_IMAGE_SERIES_VARIANCE_RATIO = 0.2
+_MAX_VARIANCE_OVER_SQUARED_HARDNESS = 0.2
 """Variance of the pressure over squared hardness [1] up to which the series of image sources is faster."""
 
 
@@ -28,10 +28,10 @@ def contact_area_shares(
     """
     x = np.minimum(pressure / hardness, 1.0)
     t = (pressure_standard_deviation / hardness) ** 2
-    image_series = _image_source_series(x, np.minimum(t, _MAX_IMAGE_SERIES_VARIANCE_RATIO))
-    mode_series = _diffusion_mode_series(x, np.maximum(t, _MAX_IMAGE_SERIES_VARIANCE_RATIO))
+    image_series = _image_source_series(x, np.minimum(t, _MAX_VARIANCE_OVER_SQUARED_HARDNESS))
+    mode_series = _diffusion_mode_series(x, np.maximum(t, _MAX_VARIANCE_OVER_SQUARED_HARDNESS))
     elastic, load = (
-        select(t < _MAX_IMAGE_SERIES_VARIANCE_RATIO, a, b)
+        select(t < _MAX_VARIANCE_OVER_SQUARED_HARDNESS, a, b)
         for a, b in zip(image_series, mode_series, strict=True)
     )
     return elastic, np.maximum(x - load, 0.0)

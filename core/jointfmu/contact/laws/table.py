@@ -32,15 +32,15 @@ MAX_TABLE_POINTS = 32
 MAX_ONSET_EXPONENT = 1.0
 """Largest exponent n of K ~ p^n [1] below the first point: that of the contact of many spots. With a larger
 one, the approach from first contact to the first point would depend on the pressure of first contact."""
-ONSET_PRESSURE_RATIO = 1e-6
+ONSET_PRESSURE_OVER_FIRST_POINT = 1e-6
 """Pressure at which the stiffness begins, over that of the first point [1]."""
 MIN_TRACTION_RATIO = 1e-7
 """Traction ratio [1] below which the loss factor is proportional to it, within round-off."""
-MAX_EXPONENT = 5.0
+MAX_STIFFNESS_EXPONENT = 5.0
 """Largest exponent of K ~ p^n between two points [1]: contact of rough surfaces has up to about 1."""
-MIN_PRESSURE_STEP = 1.001
+MIN_PRESSURE_RATIO_OF_NEIGHBOURS = 1.001
 """Smallest ratio of the pressures of neighbouring points [1]."""
-_MIN_LENGTH = 1e-100
+_MIN_SEGMENT_LENGTH = 1e-100
 """Smallest length of a spline segment in ln p [1], for segments that only fill up the data of an FMU."""
 _SIZE_EXPONENT = 0.25
 """Exponent m [1] of the formal size distribution, smaller than the exponent of any load; m cancels."""
@@ -64,7 +64,7 @@ class LogSpline(NamedTuple):
         below = np.minimum(u, 0.0)
         y, slope = self.exponents[0] * below, self.exponents[0]
         for i in range(len(self.u) - 1):
-            length = np.maximum(self.u[i + 1] - self.u[i], _MIN_LENGTH)
+            length = np.maximum(self.u[i + 1] - self.u[i], _MIN_SEGMENT_LENGTH)
             rise, first, last = self.y[i + 1] - self.y[i], self.exponents[i], self.exponents[i + 1]
             a = 3.0 * rise / length - 2.0 * first - last
             b = first + last - 2.0 * rise / length
@@ -116,20 +116,21 @@ class StiffnessTable:
             )
         for i in range(1, count):
             (p, q), (K, L) = self.pressure[i - 1 : i + 1], self.stiffness[i - 1 : i + 1]
-            if not q >= MIN_PRESSURE_STEP * p:
+            if not q >= MIN_PRESSURE_RATIO_OF_NEIGHBOURS * p:
                 raise ValueError(
                     f"table.pressure[{i}] = {q:g} Pa follows {p:g} Pa; expected increasing pressures, each "
-                    f"at least {MIN_PRESSURE_STEP - 1.0:.1%} above the one before it"
+                    f"at least {MIN_PRESSURE_RATIO_OF_NEIGHBOURS - 1.0:.1%} above the one before it"
                 )
             if not L >= K:
                 raise ValueError(
                     f"table.stiffness[{i}] = {L:g} Pa/m is below the one before it, {K:g} Pa/m: the "
                     "stiffness must not fall as the pressure rises"
                 )
-            if (exponent := np.log(L / K) / np.log(q / p)) > MAX_EXPONENT:
+            if (exponent := np.log(L / K) / np.log(q / p)) > MAX_STIFFNESS_EXPONENT:
                 raise ValueError(
                     f"table.stiffness[{i}] = {L:g} Pa/m rises from {K:g} Pa/m with power {exponent:.3g} of "
-                    f"the pressure, allowed is up to {MAX_EXPONENT:g}: smooth the points, or leave some out"
+                    f"the pressure, allowed is up to {MAX_STIFFNESS_EXPONENT:g}: smooth the points, "
+                    "or leave some out"
                 )
 
     @property
@@ -213,7 +214,7 @@ class TableLaw(CheckedParameters):
                 "elastic_work": (proportional(p * area * p / K),),
                 "plastic_work": (proportional(0.0),),
             },
-            onset_log_area=float(np.log(ONSET_PRESSURE_RATIO)),
+            onset_log_area=float(np.log(ONSET_PRESSURE_OVER_FIRST_POINT)),
             has_spot_area=False,
             kink_log_areas=tuple(spline.u[:-1]),
         )

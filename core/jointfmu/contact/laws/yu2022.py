@@ -23,11 +23,11 @@ from ..surface import (
 )
 from .kogut_etsion import (
     FIRST_STAGE,
-    PLASTIC_AREA_RATIO,
-    PLASTIC_DEFORMATION_RATIO,
+    PLASTIC_AREA_OVER_FIRST_YIELD,
+    PLASTIC_DEFORMATION_OVER_FIRST_YIELD,
     SECOND_STAGE,
-    SECOND_STAGE_AREA_RATIO,
-    SECOND_STAGE_DEFORMATION_RATIO,
+    SECOND_STAGE_AREA_OVER_FIRST_YIELD,
+    SECOND_STAGE_DEFORMATION_OVER_FIRST_YIELD,
     PlasticStage,
 )
 
@@ -240,9 +240,12 @@ def _elastic_plastic_stages(law: Yu2022) -> tuple[tuple[PlasticStage, PlasticSta
     kogut_etsion : a = a_nec(R_m) m (w/w_nec)^n as in Eqs. 33 and 35; limits 7.1197 and 205.38
     """
     if law.plastic_area == "kogut_etsion":
-        return (FIRST_STAGE, SECOND_STAGE), (PLASTIC_AREA_RATIO, SECOND_STAGE_AREA_RATIO)
+        return (FIRST_STAGE, SECOND_STAGE), (
+            PLASTIC_AREA_OVER_FIRST_YIELD,
+            SECOND_STAGE_AREA_OVER_FIRST_YIELD,
+        )
     plain = (
         FIRST_STAGE._replace(area_factor=1.0, area_exponent=1.0),
         SECOND_STAGE._replace(area_factor=1.0, area_exponent=1.0),
     )
-    return plain, (PLASTIC_DEFORMATION_RATIO, SECOND_STAGE_DEFORMATION_RATIO)
+    return plain, (PLASTIC_DEFORMATION_OVER_FIRST_YIELD, SECOND_STAGE_DEFORMATION_OVER_FIRST_YIELD)

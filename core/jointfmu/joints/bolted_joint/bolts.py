@@ -17,10 +17,10 @@ from ...mechanics.footprint.distribution import NodalField
 from ...quantity import Array
 from .law import AnyBoltedJoint, ElasticBodies, working_preload
 
-LIFT_OFF_RATIO = 1e-9
+LIFT_OFF_FORCE_OVER_CLOSING_LOAD = 1e-9
 """Largest force of a bolt at lift-off, over the load at which the contact closes [1]. At lift-off the
 stiffness is the mean of the values before and after. Round-off of the equilibrium is far below this force."""
-LIFT_OFF_STIFFNESS_FACTOR = 0.5
+LIFT_OFF_OVER_FULL_STIFFNESS = 0.5
 """Stiffness of a bolt at lift-off over its full stiffness [1]. A bolt without preload is at lift-off in the
 tightened state."""
 ONE_ROW_TOLERANCE = 1e-6
@@ -48,7 +48,10 @@ class BoltSprings:
         position = bolt_positions(joint)
         count = float(joint.n_bolts) / len(position)
         return cls(
-            position, count, float(joint.bolt_stiffness), LIFT_OFF_RATIO * closure_pressure * float(joint.A_0)
+            position,
+            count,
+            float(joint.bolt_stiffness),
+            LIFT_OFF_FORCE_OVER_CLOSING_LOAD * closure_pressure * float(joint.A_0),
         )
 
     @cached_property
@@ -79,7 +82,7 @@ class BoltSprings:
         pulling = np.where(
             force > self.lift_off_force,
             1.0,
-            np.where(force < -self.lift_off_force, 0.0, LIFT_OFF_STIFFNESS_FACTOR),
+            np.where(force < -self.lift_off_force, 0.0, LIFT_OFF_OVER_FULL_STIFFNESS),
         )
         return np.asarray(self.stiffness * pulling)
 

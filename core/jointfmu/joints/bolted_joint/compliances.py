@@ -13,7 +13,7 @@ COMPLIANCE_COMPONENTS = ("interface", "members", "bolts")
 """Parts of the joint whose compliances add up, in the order of `component_compliances`."""
 MIN_INTERFACE_SHARE = 0.1
 """Share of the interface in the compliance of the joint [1] from which its law matters."""
-MIN_BOLT_STIFFNESS_RATIO = 1e-9
+MIN_BOLT_OVER_JOINT_STIFFNESS = 1e-9
 """Stiffness of the bolts over that of the joint [1] that counts as zero: round-off of the bolt positions."""
 
 
@@ -84,7 +84,9 @@ class Compliances(NamedTuple):
         """Row of a table for each direction: name, unit, stiffness of joint, interface, members and bolts (0:
         none), and the shares [1] of the last three in the compliance."""
         joint = 1.0 / self.total_compliance
-        bolts = np.where(self.bolt_stiffness > MIN_BOLT_STIFFNESS_RATIO * joint, self.bolt_stiffness, 0.0)
+        bolts = np.where(
+            self.bolt_stiffness > MIN_BOLT_OVER_JOINT_STIFFNESS * joint, self.bolt_stiffness, 0.0
+        )
         each = np.stack([joint, 1.0 / self.interface_compliance, self.member_stiffness, bolts])
         return [
             (_stiffness_name(name), unit, each[:, i].tolist(), self.compliance_shares[:, i].tolist())

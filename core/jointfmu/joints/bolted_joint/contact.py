@@ -16,7 +16,7 @@ from ...quantity import Array, Number, select
 from .kinematics import rigid_opening
 from .law import AnyBoltedJoint, preload_pressure
 
-MIN_PRESSURE_RATIO = 0.01
+ADDED_OVER_MEAN_PRESSURE = 0.01
 """Pressure over the mean pressure [1] added to all points and patches when the normal force is distributed,
 so that open points and patches take part."""
 SINKHORN_ITERATIONS = 100
@@ -25,7 +25,7 @@ MIN_TRANSFER_SHARE, MAX_PATCHES_PER_POINT = 0.02, 8
 """Smallest share of the force of a point for a patch [1], and largest number of patches of a point [1]."""
 TRANSFER_DECIMALS = 4
 """Decimals to which the shares of `force_transfer` are rounded [1]."""
-MAX_SQUARE_DISTANCE_RATIO = 300.0
+MAX_OVER_MEAN_SQUARE_DISTANCE = 300.0
 """Largest square distance from a patch over the mean square distance [1]; it replaces larger ones."""
 
 
@@ -130,10 +130,11 @@ def force_transfer(points: PressureDistribution, patches: FrictionPatches) -> Ar
     square = np.sum((patches.position[:, None] - points.position) ** 2, axis=2)
     nearest = np.min(square, axis=0)
     point_force, patch_force = (
-        nodes.area_share * (nodes.preload_pressure_ratio + MIN_PRESSURE_RATIO) for nodes in (points, patches)
+        nodes.area_share * (nodes.preload_pressure_ratio + ADDED_OVER_MEAN_PRESSURE)
+        for nodes in (points, patches)
     )
     width = np.maximum(point_force @ nearest / np.sum(point_force), np.finfo(float).tiny)
-    kernel = np.exp(-np.minimum((square - nearest) / width, MAX_SQUARE_DISTANCE_RATIO))
+    kernel = np.exp(-np.minimum((square - nearest) / width, MAX_OVER_MEAN_SQUARE_DISTANCE))
     scale = np.ones_like(patch_force)
     for _ in range(2):
         for _ in range(SINKHORN_ITERATIONS):

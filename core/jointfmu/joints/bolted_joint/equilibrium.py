@@ -10,7 +10,7 @@ S modal stiffness, p contact pressure, t traction, A area, k_b and e stiffness a
 is at least the negative preload of the bolt, see `BoltSprings`.
 
 Newton's method takes the part of H (below) for a as its first Jacobian, and corrects it by Broyden's update.
-It computes J after an iteration that reduces the residual too little, see JACOBIAN_REUSE_RATIO, and after a
+It computes J after an iteration that reduces the residual too little, see JACOBIAN_REUSE_RESIDUAL_DECREASE, and after a
 correction that the line search shortens or drops. A load step that does not converge is divided: q is then
 prescribed at step fractions between 0 (start of the load step) and 1 (end). The fractions only lead a to the
 solution: friction always gets one straight increment from the start of the load step to the trial state, so
@@ -48,22 +48,22 @@ from .kinematics import opening_jacobian, rigid_opening, tangential_displacement
 RELATIVE_TOLERANCE = 1e-13
 """Residual over the sum of all forces [1] that counts as equilibrium: the round-off of the sum. The load at
 which the contact closes is part of the sum: all other forces vanish if the joint is open."""
-CANCELLATION_RATIO = 0.02
+RIGID_OPENING_FORCE_FACTOR = 0.02
 """Factor on the force by rigid-body opening in the sum of RELATIVE_TOLERANCE [1]: modal opening cancels
 nearly all of this force."""
 INTERMEDIATE_TOLERANCE_FACTOR = 1e7
 """Tolerance inside a divided load step over the tolerance at its end [1]."""
 MAX_NEWTON_ITERATIONS, MAX_LINE_SEARCH = 16, 6
 """Newton iterations at one step fraction [1], and trial lengths in each iteration [1]."""
-JACOBIAN_REUSE_RATIO = 0.03
+JACOBIAN_REUSE_RESIDUAL_DECREASE = 0.03
 """Residual after an iteration over the residual before [1], below which J is reused."""
-MAX_ENERGY_SLOPE_RATIO = 0.5
+MAX_FINAL_OVER_INITIAL_ENERGY_SLOPE = 0.5
 """Energy slope at the end of a correction over its initial size [1], above which the step is too long."""
-MIN_LENGTH_RATIO = 0.1
+MIN_OVER_PREVIOUS_CORRECTION_LENGTH = 0.1
 """Smallest length of a shortened correction, over the length of the previous trial [1]."""
 MIN_LOAD_STEP = 1e-4
 """Increment of the step fraction [1] below which a load step is given up."""
-DIFFERENCE_STEP = 1e-7
+TRACTION_DIFFERENCE_STEP = 1e-7
 """Step of finite differences of the tractions, over the largest patch approach at tightening [1].
 
 Without preload all patches are open: then over the approach at which the contact has closed, if that is
@@ -242,7 +242,7 @@ class LoadStep:
         force_sum = assembly.point_area @ (normal.pressure + preload_pressure)
         force_sum += np.sum(np.abs(bolt_force_change)) + np.sum(assembly.patch_area @ np.abs(traction))
         rigid = np.max(np.abs(rigid_opening(assembly.contact.points.position, relative_displacement)))
-        force_sum += (assembly.point_area @ normal.stiffness) * rigid * CANCELLATION_RATIO
+        force_sum += (assembly.point_area @ normal.stiffness) * rigid * RIGID_OPENING_FORCE_FACTOR
         force_sum += assembly.nominal_area * assembly.contact.pressure_curve.closing_end_load
         tolerance = float(RELATIVE_TOLERANCE * force_sum)
         return TrialState(modal_coordinates, normal, increment, friction, elongation, residual, tolerance)
@@ -284,7 +284,9 @@ class LoadStep:
         Finite differences.
         """
         first = self.assembly.contact.pressure_curve.displacement[0]
-        size = DIFFERENCE_STEP * float(np.max(np.maximum(self.preload_state.patch_approach, 0.0) - first))
+        size = TRACTION_DIFFERENCE_STEP * float(
+            np.max(np.maximum(self.preload_state.patch_approach, 0.0) - first)
+        )
         traction, columns = trial_state.friction_update.traction, []
         for motion in size * np.eye(4):
             increment = trial_state.tangential_increment + motion[:3]
@@ -363,7 +365,7 @@ def solve_newton(
 
     It starts at modal coordinates a (k) [m] with the Jacobian (k, k) [N/m] of an earlier state: in a divided
     load step, too, that at the start of the load step. The Jacobian is reused, with Broyden's update, after a
-    full correction that reduces the residual below JACOBIAN_REUSE_RATIO; otherwise J is computed.
+    full correction that reduces the residual below JACOBIAN_REUSE_RESIDUAL_DECREASE; otherwise J is computed.
     """
     q = load_step.displacement_at(step_fraction)
     tolerance_factor = 1.0 if step_fraction == 1.0 else INTERMEDIATE_TOLERANCE_FACTOR
@@ -375,7 +377,7 @@ def solve_newton(
             return state, True
         if iteration == MAX_NEWTON_ITERATIONS:
             break
-        if not norm < JACOBIAN_REUSE_RATIO * last_norm:
+        if not norm < JACOBIAN_REUSE_RESIDUAL_DECREASE * last_norm:
             residual_jacobian, corrections, jacobian_is_current = load_step.residual_jacobian(state), [], True
         try:
             correction = apply_broyden(
@@ -403,9 +405,9 @@ def search_line(
 
     The energy slope [J] is residual . correction: where friction sticks, the derivative of the potential
     energy along the correction. With slip there is no potential, but the slope still vanishes at the
-    solution. If it exceeds MAX_ENERGY_SLOPE_RATIO times its first value at the end, the correction is
+    solution. If it exceeds MAX_FINAL_OVER_INITIAL_ENERGY_SLOPE times its first value at the end, the correction is
     shortened by regula falsi, or dropped if the Jacobian was computed at an earlier state. If the first value
-    is positive, too, regula falsi has no zero: the correction is shortened to MIN_LENGTH_RATIO.
+    is positive, too, regula falsi has no zero: the correction is shortened to MIN_OVER_PREVIOUS_CORRECTION_LENGTH.
     """
     length, energy_slope_0 = 1.0, float(trial_state.residual @ correction)
     for shortenings in range(MAX_LINE_SEARCH):
@@ -413,13 +415,13 @@ def search_line(
             relative_displacement, trial_state.modal_coordinates + length * correction
         )
         energy_slope_1 = float(trial.residual @ correction)
-        if not energy_slope_1 > MAX_ENERGY_SLOPE_RATIO * abs(energy_slope_0):
+        if not energy_slope_1 > MAX_FINAL_OVER_INITIAL_ENERGY_SLOPE * abs(energy_slope_0):
             return trial, shortenings == 0
         if not jacobian_is_current:
             return trial_state, False
         has_zero = energy_slope_0 < 0.0 < energy_slope_1
         zero = energy_slope_0 / (energy_slope_0 - energy_slope_1) if has_zero else 0.0
-        length *= max(zero, MIN_LENGTH_RATIO)
+        length *= max(zero, MIN_OVER_PREVIOUS_CORRECTION_LENGTH)
     return trial, False
 
 

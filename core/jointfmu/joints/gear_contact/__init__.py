@@ -11,7 +11,7 @@ from .spring import (
     TableGearContactParameters,
 )
 
-_RAMP_PRESSURE_RATIO = 0.05
+_RAMP_END_PRESSURE_OVER_HARDNESS = 0.05
 """Mean pressure over the hardness [1] at the end of the load ramp, or beyond: at twice a stated load."""
 
 MODELS = (
@@ -41,7 +41,7 @@ MODELS = (
             10.0,
             find_range=lambda s, v: (
                 0.0,
-                max(2.0 * v["f"], _RAMP_PRESSURE_RATIO * s.joint.A_0 * s.curve.end_point[1]),
+                max(2.0 * v["f"], _RAMP_END_PRESSURE_OVER_HARDNESS * s.joint.A_0 * s.curve.end_point[1]),
             ),
         ),
         dependencies={},

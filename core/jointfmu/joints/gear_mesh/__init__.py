@@ -12,7 +12,7 @@ from .spring import (
 
 _ANGLE_INPUTS = ("phi1", "phi2")
 """Names of the inputs with the angles of the two wheels."""
-_RAMP_DEFLECTION_RATIO = 0.3
+_RAMP_END_OVER_TABLE_END_DEFLECTION = 0.3
 """Deflection at the end of the load ramp over deflection at the end of the table [1]."""
 
 
@@ -20,7 +20,9 @@ def _find_ramp_range(spring: GearMeshSpring, inputs: VariableValues) -> tuple[fl
     """Angles phi1 [rad] at which the driving flanks touch, and at which the load ramp ends."""
     mesh = spring.joint
     touch = 0.5 * mesh.backlash - mesh.r_b2 * inputs["phi2"]
-    return touch / mesh.r_b1, (touch + _RAMP_DEFLECTION_RATIO * spring.curve.end_point[0]) / mesh.r_b1
+    return touch / mesh.r_b1, (
+        touch + _RAMP_END_OVER_TABLE_END_DEFLECTION * spring.curve.end_point[0]
+    ) / mesh.r_b1
 
 
 MODELS = (

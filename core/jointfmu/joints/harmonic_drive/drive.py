@@ -14,7 +14,7 @@ Lost motion: additional angle of the output around zero torque.
 The teeth never separate, so lost motion is a soft range, not a gap. Its angle is in series with the wind-up
 of the law,
 
-    phi_p(T) = lost_motion/2 tanh(T/T_p),   T_p = PLAY_WIDTH_RATIO rated_torque,
+    phi_p(T) = lost_motion/2 tanh(T/T_p),   T_p = PLAY_OVER_RATED_TORQUE rated_torque,
 
 smooth and odd, so that torque over wind-up stays a curve with a finite stiffness everywhere. Catalogues state
 as lost motion the angle between +4 % and -4 % of rated torque, midway between the branches of the loop
@@ -33,7 +33,7 @@ FRICTION_HARMONICS = (1, 2)
 """Periods of the dry friction per turn of the wave generator."""
 KINEMATIC_ERROR_HARMONICS = (1, 2, 4)
 """Periods of the kinematic error per turn of the wave generator."""
-PLAY_WIDTH_RATIO = 0.01
+PLAY_OVER_RATED_TORQUE = 0.01
 """T_p over rated torque [1]: at 4 % of rated torque the play has reached 99.93 % of its final value."""
 MAX_TEMPERATURE_COEFFICIENT = 0.2
 """Largest relative change of friction per kelvin [1/K]: twice that of the most viscous cylinder oil."""
@@ -250,7 +250,7 @@ def lost_motion_angle(drive: DriveParameters, torque: Number) -> tuple[Number, N
 
     Returns also its first [rad/(N.m)] and second derivative [rad/(N.m)2].
     """
-    width, half = PLAY_WIDTH_RATIO * drive.rated_torque, 0.5 * drive.lost_motion
+    width, half = PLAY_OVER_RATED_TORQUE * drive.rated_torque, 0.5 * drive.lost_motion
     share = np.tanh(torque / width)
     slope = half * (1.0 - share * share) / width
     return half * share, slope, -2.0 * share * slope / width

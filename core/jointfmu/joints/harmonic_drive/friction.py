@@ -31,7 +31,7 @@ from numpy.typing import ArrayLike
 from ...mechanics.history_layout import HistoryLayout
 from ...mechanics.jenkins import Sliders, SliderUpdate
 from ...quantity import Array, Number
-from .drive import FRICTION_HARMONICS, PLAY_WIDTH_RATIO, DriveParameters, compute_harmonics
+from .drive import FRICTION_HARMONICS, PLAY_OVER_RATED_TORQUE, DriveParameters, compute_harmonics
 from .hysteresis import slider_shares
 
 FRICTION_SLIDERS = 8
@@ -77,10 +77,10 @@ def friction_limits(
     temperature : (...) [K]
     phi1        : (...) [rad] angle of the wave generator; None: mean over a turn
 
-    Two functions of the sign of tau are replaced by smooth ones, with t = PLAY_WIDTH_RATIO rated_torque:
-    |tau| is tau tanh(tau/t), and the weight of load_loss_back is (1 +- tanh(tau/t))/2.
+    Two functions of the sign of tau are replaced by smooth ones, with t = PLAY_OVER_RATED_TORQUE
+    rated_torque: |tau| is tau tanh(tau/t), and the weight of load_loss_back is (1 +- tanh(tau/t))/2.
     """
-    load_sign = np.tanh(tau / (PLAY_WIDTH_RATIO * drive.rated_torque))
+    load_sign = np.tanh(tau / (PLAY_OVER_RATED_TORQUE * drive.rated_torque))
     size = tau * load_sign / np.abs(drive.ratio)
     stribeck = drive.friction_stribeck * np.exp(-((w1 / drive.stribeck_speed) ** 2))
     difference = drive.effective_load_loss_back - drive.load_loss

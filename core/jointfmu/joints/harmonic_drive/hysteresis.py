@@ -48,7 +48,7 @@ REMAINING_FRICTION_SHARES = (
 """Values of s [1], from 1 down to 0, that separate the sliders."""
 WIND_UP_TOLERANCE = 4e-16
 """Change of the wind-up [1], over the sum of wind-up and M_f/K_h, below which its iteration stops."""
-MIN_REVERSAL_RATIO = 4.0
+MIN_UNLOADING_OVER_REVERSAL_WIND_UP = 4.0
 """Smallest K_h phi/(2 M_f) [1] on the unloading path from rated torque to zero, if hysteresis_stiffness is 0:
 at zero torque the friction has then reversed to 1 - 2 exp(-4) = 0.96 of its limit."""
 LIMIT_TOLERANCE, MAX_LIMIT_ITERATIONS = 1e-13, 400
@@ -193,7 +193,7 @@ def _initial_stiffness(drive: DriveParameters, curve: Curve, half_loop_torque: f
     if drive.hysteresis_stiffness > 0.0:
         return drive.hysteresis_stiffness
     back = float(curve.inverse(drive.rated_torque - half_loop_torque)) - 0.5 * drive.hysteresis_loss
-    return max(float(curve.stiffness[0]), 2.0 * MIN_REVERSAL_RATIO * half_loop_torque / back)
+    return max(float(curve.stiffness[0]), 2.0 * MIN_UNLOADING_OVER_REVERSAL_WIND_UP * half_loop_torque / back)
 
 
 def _find_limit_torque(

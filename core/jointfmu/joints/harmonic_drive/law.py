@@ -11,7 +11,7 @@ from ...contact.surface import ArealSurface, ElasticConstants, ElasticPlasticCon
 from ...quantity import Interval, Number, ParameterLimit, choice_field, group_field, quantity_field, select
 from .drive import DriveParameters, lost_motion_angle
 
-PRESSURE_SATURATION_TORQUE_RATIO = 2.0
+SATURATION_OVER_RATED_TORQUE = 2.0
 """Torque T_m over rated torque [1] at which the contact pressure saturates: for larger torques the pressure
 tends to the value that it would have at T_m without saturation."""
 _SURFACE_SCAN_LENGTH = 0.5e-3
@@ -232,10 +232,10 @@ def peak_pressure(drive: ContactPairDriveParameters, torque: Number) -> tuple[Nu
     `sqrt(p_0^2 + (p_r^2 - p_0^2) g(t(T))/g(t(T_r))) - loss` with `g(t) = sqrt(t^2 + T_s^2) - T_s`.
     The peak pressure of a line contact grows with the square root of its load. Here the load has a constant
     part and a part proportional to |T|, which is smoothed around T = 0.
-    `t(T) = T/(1 + (T/T_m)^4)^(1/4)` tends to T_m = PRESSURE_SATURATION_TORQUE_RATIO times the rated torque,
+    `t(T) = T/(1 + (T/T_m)^4)^(1/4)` tends to T_m = SATURATION_OVER_RATED_TORQUE times the rated torque,
     because the stiffness of catalogue drives becomes constant. Beyond rated torque this is an extrapolation.
     """
-    smoothing, saturation = drive.torque_smoothing, PRESSURE_SATURATION_TORQUE_RATIO * drive.rated_torque
+    smoothing, saturation = drive.torque_smoothing, SATURATION_OVER_RATED_TORQUE * drive.rated_torque
 
     def saturate_torque(torque: Number) -> tuple[Number, Number]:
         """Squared saturated torque t^2 [(N.m)^2], and t dt/dT [N.m]."""

@@ -22,12 +22,12 @@ from ...quantity import (
     select,
     series_field,
 )
-from .drive import PLAY_WIDTH_RATIO, DriveParameters, lost_motion_angle
+from .drive import PLAY_OVER_RATED_TORQUE, DriveParameters, lost_motion_angle
 
-DEFAULT_CORNER_HALF_WIDTH_RATIO = 0.04
+DEFAULT_CORNER_HALF_WIDTH_OVER_WIND_UP = 0.04
 """Default half-width of a smoothed corner over its wind-up [1]: for catalogue drives the angle at a corner is
 then within 0.4 % of the lines."""
-MIN_CORNER_HALF_WIDTH_RATIO = 1e-6
+MIN_CORNER_HALF_WIDTH_OVER_WIND_UP = 1e-6
 """Smallest half-width of a corner over its wind-up [1], used if `corner` is 0.
 
 The angle at a corner is within 1e-7 of the lines."""
@@ -35,19 +35,19 @@ MAX_STIFFNESS = 1e12
 """Largest stiffness of a drive [N.m/rad]: more than that of a solid steel shaft of its size."""
 MAX_TABLE_POINTS = 1000
 """Largest number of points of a measured table."""
-MIN_END_STIFFNESS_RATIO, MAX_END_STIFFNESS_RATIO = 1.0 / 3.0, 3.0
+MIN_END_OVER_MEAN_STIFFNESS, MAX_END_OVER_MEAN_STIFFNESS = 1.0 / 3.0, 3.0
 """Bounds of the stiffness at the last point over the mean stiffness of the last segment [1]."""
-MIN_STIFFNESS_RATIO = 0.5
+MIN_INNER_OVER_END_STIFFNESS = 0.5
 """Smallest stiffness inside a segment, over its mean or its end stiffness [1], for which the derivative of
 the stiffness is made continuous at its points."""
 PLAY_NODE_COUNT = 60
 """Number of nodes for the lost motion on the first line of a catalogue drive [1].
 
 The torque error is below 1e-8 rated_torque."""
-PLAY_END_TORQUE_RATIO = 8.0
+PLAY_END_OVER_PLAY_TORQUE = 8.0
 """Torque over T_p at which the lost motion has ended [1]: 2e-7 of lost_motion is then missing.
 
-T_p is the torque of PLAY_WIDTH_RATIO."""
+T_p is the torque of PLAY_OVER_RATED_TORQUE."""
 _SEGMENT_SAMPLE_POINTS = np.linspace(0.0, 1.0, 33)
 """Relative positions in a segment [1] at which the stiffness of the midline is checked."""
 
@@ -105,7 +105,8 @@ class CatalogueDriveParameters(PrescribedDriveParameters):
     corner at the wind-up theta_i, within theta_i (1 +- corner), the stiffness changes from one line to the
     next by the smooth step 3 t^2 - 2 t^3. Outside this range torque and angle are exactly those of the lines.
     The torque is twice continuously differentiable everywhere. With corner = 0 the angles are those of the
-    lines, and the stiffness jumps at T1 and T2 (within MIN_CORNER_HALF_WIDTH_RATIO): a kink without an event.
+    lines, and the stiffness jumps at T1 and T2 (within MIN_CORNER_HALF_WIDTH_OVER_WIND_UP): a kink
+    without an event.
     """
 
     K1: float = quantity_field("N.m/rad", "stiffness below T1", gt=0.0, le=MAX_STIFFNESS)
@@ -118,7 +119,7 @@ class CatalogueDriveParameters(PrescribedDriveParameters):
         "half-width of the smooth corners at T1 and T2, divided by the wind-up there; 0: sharp corners",
         ge=0.0,
         lt=1.0,
-        default=DEFAULT_CORNER_HALF_WIDTH_RATIO,
+        default=DEFAULT_CORNER_HALF_WIDTH_OVER_WIND_UP,
     )
     max_torque: float = quantity_field(
         "N.m", "largest torque of the tabulated law, above the second corner", gt=0.0
@@ -146,13 +147,13 @@ class CatalogueDriveParameters(PrescribedDriveParameters):
                     ge=0.0,
                     le=select(
                         self._first_line_torque
-                        > PLAY_END_TORQUE_RATIO * PLAY_WIDTH_RATIO * self.rated_torque,
+                        > PLAY_END_OVER_PLAY_TORQUE * PLAY_OVER_RATED_TORQUE * self.rated_torque,
                         1.0,
                         0.0,
                     ),
                 ),
-                f"T1 must be above {PLAY_END_TORQUE_RATIO * PLAY_WIDTH_RATIO:g} rated_torque, where play "
-                "ends",
+                f"T1 must be above {PLAY_END_OVER_PLAY_TORQUE * PLAY_OVER_RATED_TORQUE:g} rated_torque, "
+                "where play ends",
             ),
         ]
 
@@ -171,8 +172,11 @@ class CatalogueDriveParameters(PrescribedDriveParameters):
 
     @property
     def corner_half_width_ratio(self) -> Number:
-        """Half-width of a smoothed corner over its wind-up [1], at least MIN_CORNER_HALF_WIDTH_RATIO."""
-        return np.maximum(self.corner, MIN_CORNER_HALF_WIDTH_RATIO)
+        """Half-width of a smoothed corner over its wind-up [1].
+
+        It is at least MIN_CORNER_HALF_WIDTH_OVER_WIND_UP.
+        """
+        return np.maximum(self.corner, MIN_CORNER_HALF_WIDTH_OVER_WIND_UP)
 
     @property
     def max_table_torque(self) -> Number:
@@ -210,7 +214,7 @@ class CatalogueDriveParameters(PrescribedDriveParameters):
     def _play_nodes(self) -> list[SplineNode]:
         """Nodes of the first catalogue line in series with the lost motion; denser at small torque."""
         end_torque = np.minimum(
-            PLAY_END_TORQUE_RATIO * PLAY_WIDTH_RATIO * self.rated_torque, self._first_line_torque
+            PLAY_END_OVER_PLAY_TORQUE * PLAY_OVER_RATED_TORQUE * self.rated_torque, self._first_line_torque
         )
         nodes = []
         for position in np.arange(PLAY_NODE_COUNT) / PLAY_NODE_COUNT:
@@ -267,7 +271,7 @@ class TableDriveParameters(MeasuredDriveParameters):
 
     The torque between the points is a monotone spline with the stiffnesses of Fritsch and Butland 1984
     (PCHIP) at the points. The derivative of the stiffness is made continuous at a point if the stiffness then
-    stays well above zero (MIN_STIFFNESS_RATIO).
+    stays well above zero (MIN_INNER_OVER_END_STIFFNESS).
     """
 
     table: MeasuredMidline = group_field("measured midline, without the point at zero load")
@@ -303,7 +307,9 @@ class TableDriveParameters(MeasuredDriveParameters):
         mean = (h[1:] * slope_before[:-1] + h[:-1] * slope_after[1:]) / (h[:-1] + h[1:])
         common_slope = np.concatenate([[0.0], mean, slope_before[-1:]])
         smallest = np.min(_sample_stiffness(h, torque_steps, s, common_slope[:-1], common_slope[1:]), axis=0)
-        is_stiff = smallest > MIN_STIFFNESS_RATIO * np.minimum(np.minimum(s[:-1], s[1:]), torque_steps / h)
+        is_stiff = smallest > MIN_INNER_OVER_END_STIFFNESS * np.minimum(
+            np.minimum(s[:-1], s[1:]), torque_steps / h
+        )
         slope_after = np.where(is_stiff, common_slope[:-1], slope_after)
         slope_before = np.where(is_stiff, common_slope[1:], slope_before)
         ends = np.concatenate([[0.0], slope_before]), np.concatenate([slope_after, [0.0]])
@@ -328,8 +334,8 @@ def _node_stiffness(segment_widths: Array, secant_stiffnesses: Array) -> Array:
             [
                 np.clip(
                     end_stiffness,
-                    MIN_END_STIFFNESS_RATIO * secant_stiffnesses[-1],
-                    MAX_END_STIFFNESS_RATIO * secant_stiffnesses[-1],
+                    MIN_END_OVER_MEAN_STIFFNESS * secant_stiffnesses[-1],
+                    MAX_END_OVER_MEAN_STIFFNESS * secant_stiffnesses[-1],
                 )
             ],
         ]

@@ -133,7 +133,7 @@ class MergedDistribution:
 
 _POINT_ENTRIES = ("share", "x", "y", "equal", "tilt")
 """Keys of the section [field] of a parameter file for the contact points."""
-PATCH_PREFIX = "patch_"
+PATCH_KEY_PREFIX = "patch_"
 """Prefix of the keys of the section [field] of a parameter file for the friction patches."""
 MAX_PATCHES = 22
 """Largest number of friction patches of a joint [1], each with sliders."""
@@ -154,7 +154,9 @@ def encode_nodal_field(distribution: PressureDistribution) -> dict[str, tuple[fl
         )
     )
     if isinstance(distribution, FrictionPatches):
-        rows = {PATCH_PREFIX + name: row for name, row in (rows | {"radius": distribution.radius}).items()}
+        rows = {
+            PATCH_KEY_PREFIX + name: row for name, row in (rows | {"radius": distribution.radius}).items()
+        }
     return {name: tuple(row.tolist()) for name, row in rows.items()}
 
 
@@ -227,7 +229,7 @@ class NodalField:
 
     def __post_init__(self) -> None:
         check_fields(self)
-        for prefix in ("", PATCH_PREFIX):
+        for prefix in ("", PATCH_KEY_PREFIX):
             self._check_points(prefix)
         if (count := len(self.patch_share)) > MAX_PATCHES:
             raise ValueError(f"patch_share has {count} numbers, expected at most {MAX_PATCHES}")
@@ -293,7 +295,7 @@ class NodalField:
         """Friction patches; None if the field states none."""
         if not self.patch_share:
             return None
-        patches = self._make_distribution(PATCH_PREFIX).as_patches()
+        patches = self._make_distribution(PATCH_KEY_PREFIX).as_patches()
         return replace(patches, radius=np.array(self.patch_radius)) if self.patch_radius else patches
 
     def _make_distribution(self, entry_prefix: str) -> PressureDistribution:

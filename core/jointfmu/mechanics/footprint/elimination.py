@@ -67,12 +67,12 @@ def select_independent(
     return indices, basis
 
 
-def solve_linear(matrix: Array, right_side: Array) -> Array:
+def solve_linear(positive_definite_matrix: Array, right_hand_side: Array) -> Array:
     """Solve a linear system with a positive definite matrix (n, n) by Gaussian elimination.
 
     Returns the solution (n); the order of all operations is fixed.
     """
-    rows, out = np.column_stack([matrix, right_side]), np.zeros_like(right_side)
+    rows, out = np.column_stack([positive_definite_matrix, right_hand_side]), np.zeros_like(right_hand_side)
     for k in range(len(out) - 1):
         rows[k + 1 :, k:] -= (rows[k + 1 :, k] / rows[k, k])[:, None] * rows[k, k:]
     for k in range(len(out))[::-1]:

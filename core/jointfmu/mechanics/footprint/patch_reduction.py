@@ -42,9 +42,9 @@ SLIP_CASE_COUNT, GROSS_SLIP_CASE_COUNT = 240, 200
 """Number of fitted cases [1]: partial slip from the virgin state, and gross slip about a pole."""
 UNTILTED_CASE_SHARE = 0.4
 """Share of the cases of partial slip without normal displacement and tilt [1]."""
-MAX_OPENING_RATIO, MAX_TILT_OPENING_RATIO = 0.1, 0.2
+MAX_OPENING_OVER_APPROACH, MAX_TILT_OPENING_OVER_APPROACH = 0.1, 0.2
 """Largest normal displacement, and largest opening by tilt at the edge, over the largest approach [1]."""
-MAX_MOMENT_RATIO = 2.5
+MAX_MOMENT_OVER_OPENING_MOMENT = 2.5
 """Largest moment of the cases, over the moment that opens part of the contact [1].
 
 The latter is that of `largest_moment_factor`."""
@@ -61,7 +61,7 @@ MARQUARDT_DAMPING_DECREASE, MARQUARDT_DAMPING_INCREASE = 0.2, 5.0
 """Factors on the damping after a successful and after a rejected step [1]."""
 MAX_RELATIVE_STEP = 0.5
 """Largest relative change of a share, position or pressure in one step [1]."""
-MIN_NORMAL_DIAGONAL_RATIO = 1e-9
+MIN_OVER_MAX_NORMAL_DIAGONAL = 1e-9
 """Smallest diagonal entry of the normal equations used for damping, over the largest entry [1]."""
 EXACT_SUM_WEIGHT = 400.0
 """Weight of a sum that must be kept exactly, over the weight of a case of friction [1]."""
@@ -79,7 +79,7 @@ GROSS_SLIP_FORCE_WEIGHT, GROSS_SLIP_TORQUE_WEIGHT, LOSS_AND_TRANSLATION_WEIGHT =
 translations and of rotations about the centre. All other values have the weight 1."""
 SLIDER_CIRCLE_POINT_COUNT = 4
 """Number of points on the circle of a patch that represent its sliders in the fit [1]."""
-SLIDER_CIRCLE_RADIUS_RATIO = 0.9
+SLIDER_CIRCLE_OVER_GYRATION_RADIUS = 0.9
 """Radius of the circle over the radius of gyration of the friction of a patch [1]: in a rotation about a pole
 inside it, a disc acts like a smaller ring."""
 NODE_DIVISION_PRESSURE_OFFSET, LLOYD_ITERATIONS = 0.1, 5
@@ -129,7 +129,9 @@ def reduce_patches(
         / unit
         for each in (rough.as_patches(), distribution.as_patches(), first)
     )
-    aim = _TargetSums.for_nodes(nodes, MAX_MOMENT_RATIO * largest_moment_factor(rough) * steep / highest)
+    aim = _TargetSums.for_nodes(
+        nodes, MAX_MOMENT_OVER_OPENING_MOMENT * largest_moment_factor(rough) * steep / highest
+    )
     moved = _correct_exact_sums(
         _fit_points(points, aim),
         aim.max_coordinates,
@@ -178,7 +180,7 @@ def _divide_nodes_among_patches(distribution: PressureDistribution, patch_centre
     xx, xy, yy = (float(np.add.reduce(share * each)) for each in (x * x, x * y, y * y))
     thin = max(0.5 * (xx + yy - float(np.sqrt((xx - yy) ** 2 + 4.0 * xy * xy))), 0.0)  # 0 for nodes on a line
     radius = np.minimum(
-        SLIDER_CIRCLE_RADIUS_RATIO * np.sqrt(sum_over_nodes(weight * away) / whole), np.sqrt(thin)
+        SLIDER_CIRCLE_OVER_GYRATION_RADIUS * np.sqrt(sum_over_nodes(weight * away) / whole), np.sqrt(thin)
     )
     return FrictionPatches(
         area,
@@ -247,9 +249,9 @@ class _SlipCases:
         columns = (
             power,
             largest_moment * moment,
-            MAX_OPENING_RATIO * apart * moves,
-            MAX_TILT_OPENING_RATIO / max_coordinates[1] * about_x * moves,
-            MAX_TILT_OPENING_RATIO / max_coordinates[0] * about_y * moves,
+            MAX_OPENING_OVER_APPROACH * apart * moves,
+            MAX_TILT_OPENING_OVER_APPROACH / max_coordinates[1] * about_x * moves,
+            MAX_TILT_OPENING_OVER_APPROACH / max_coordinates[0] * about_y * moves,
             motion,
             np.where(
                 gross,
@@ -424,7 +426,7 @@ class _LinearisedFit:
     def solve_marquardt_step(self, damping: float) -> Array:
         """Levenberg-Marquardt step: change (6, n) of the points for a damping [1]."""
         own = np.diag(self.normal_matrix)
-        diagonal = damping * (own + MIN_NORMAL_DIAGONAL_RATIO * np.max(own))
+        diagonal = damping * (own + MIN_OVER_MAX_NORMAL_DIAGONAL * np.max(own))
         parts = solve_linear(self.normal_matrix + np.diag(diagonal), -self.gradient)
         parts = np.clip(parts, -MAX_RELATIVE_STEP, MAX_RELATIVE_STEP).reshape(self.change_scale.shape)
         return np.concatenate([self.change_scale * parts, np.zeros_like(self.change_scale[:1])])

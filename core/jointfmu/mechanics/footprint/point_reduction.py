@@ -34,7 +34,7 @@ UNTILTED_STATE_SHARE = 0.4
 """Share of the states without normal displacement and tilt [1]."""
 DISPLACED_STATE_WEIGHT = 0.02
 """Weight of the states with displacement and tilt, over that of the others [1]."""
-MAX_OPENING_RATIO, MAX_TILT_OPENING_RATIO = 0.1, 0.1
+MAX_OPENING_OVER_APPROACH, MAX_TILT_OPENING_OVER_APPROACH = 0.1, 0.1
 """Largest normal displacement, and largest opening by tilt at the edge, over the largest approach [1]."""
 MAX_LOST_FORCE_SHARE = 1e-4
 """Share of the force [1] that is lost by opening at the largest moment."""
@@ -254,7 +254,7 @@ def _sample_load_functions(distribution: PressureDistribution) -> Array:
     power = np.choose(number % len(LAW_EXPONENTS), LAW_EXPONENTS)
     is_moved = number >= UNTILTED_STATE_SHARE * SAMPLED_STATE_COUNT
     normal_displacement = is_moved * (
-        MAX_OPENING_RATIO * opening + MAX_TILT_OPENING_RATIO * (about_x * y - about_y * x)
+        MAX_OPENING_OVER_APPROACH * opening + MAX_TILT_OPENING_OVER_APPROACH * (about_x * y - about_y * x)
     )
     approach = take_power_of_two_root(
         np.maximum(

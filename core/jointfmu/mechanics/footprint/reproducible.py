@@ -22,7 +22,7 @@ GRAM_BLOCK_SIZE = 22
 """Block size [1] for symmetric products: nearly half of the matrix is copied instead of computed."""
 GRAM_BATCH_SIZE = 64
 """Number of columns [1] whose products are added in one call: they fit into a processor's cache."""
-ROUND_OFF_RATIO = 2.0**-46
+ROUND_OFF_OVER_LARGEST_NUMBER = 2.0**-46
 """Ratio to the largest number [1] below which a number counts as zero: round-off."""
 
 
@@ -69,12 +69,12 @@ def _round_to_steps(values: Array, binary_digits: int) -> Array:
 def clear_round_off(distribution: PressureDistribution) -> PressureDistribution:
     """Replace numbers of a pressure distribution that are only round-off by exact zeros.
 
-    The limit is ROUND_OFF_RATIO.
+    The limit is ROUND_OFF_OVER_LARGEST_NUMBER.
     """
 
     def clear_small_values(values: Array) -> Array:
         """Replace small values of one array by zeros."""
-        return np.where(np.abs(values) > ROUND_OFF_RATIO * np.max(np.abs(values)), values, 0.0)
+        return np.where(np.abs(values) > ROUND_OFF_OVER_LARGEST_NUMBER * np.max(np.abs(values)), values, 0.0)
 
     position = np.column_stack([clear_small_values(values) for values in distribution.position.T])
     return PressureDistribution(

@@ -88,7 +88,7 @@ static double approach_increment(const SpotDistribution *spots, const double *c,
 static int count_segments(const SpotDistribution *spots, double regime_start, double regime_end, int steps)
 {
     const double pairs = ceil(0.5 * steps * (regime_end - regime_start));
-    const int least = regime_start >= spots->first_kink ? MIN_SPLINE_STEPS_RATIO * steps : 2;
+    const int least = regime_start >= spots->first_kink ? MIN_STEP_FACTOR_BETWEEN_KINKS * steps : 2;
     return pairs < (double)CURVE_NODES ? (int)fmax(2.0 * pairs, least) : CURVE_NODES;
 }
 
@@ -122,7 +122,7 @@ static bool add_piece(ApproachTable *approach, Curve *curve, const SpotDistribut
 bool tabulate_approach(ApproachTable *approach, Curve *curve, const SpotDistribution *spots, const double *c, int steps,
                        Text *reason)
 {
-    const double first = spots->stiffness_onset + portable_log(CLOSING_AREA_RATIO);
+    const double first = spots->stiffness_onset + portable_log(CLOSING_END_OVER_PLASTIC_SPOT_AREA);
     double last = first, slope, ends[N_LAW_REGIME_ENDS + 2], y[N_LAW_TOTALS], x = 0.0;
     if (!solve_largest_spot(spots, c, spots->max_pressure, &last, &slope, reason))
         return false;

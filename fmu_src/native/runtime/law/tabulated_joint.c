@@ -65,7 +65,7 @@ bool joint_tabulate(Joint *joint, const double *parameters, Text *reason)
 
 bool refine_curve(Joint *joint, TabulateFunction tabulate, int steps, Text *reason)
 {
-    for (int factor = 1; factor <= MAX_REFINEMENT; factor *= 2) {
+    for (int factor = 1; factor <= MAX_STEP_COUNT_FACTOR; factor *= 2) {
         if (!tabulate(joint, steps * factor, reason)) {
             if (reason->length == 0)
                 text_append_format(

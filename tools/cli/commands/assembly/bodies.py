@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 BOLT_POSITION_TOLERANCE = 1e-6
 """Largest distance [m] of a bolt outside the bounding rectangle of the contact."""
-MIN_AREA_RATIO, MAX_CENTROID_OFFSET_RATIO = 0.9, 0.01
+MIN_CONTACT_OVER_PLATE_AREA, MAX_CENTROID_OFFSET_OVER_PLATE_SIZE = 0.9, 0.01
 """Limits for a warning: contact area over the area of the plates [1], at least, and distance between the
 centroids of contact and plates over the plate size [1], at most."""
 
@@ -148,7 +148,9 @@ def build_assembly(
     ]
     centroid = -0.25 * np.pi * hole**2 * places.sum(axis=0) / plates.contact_area
     offset = np.hypot(*(contact_field.centroid - 0.5 * (low + high) - centroid)) / max(length, width)
-    if (share := area / plates.contact_area) < MIN_AREA_RATIO or offset > MAX_CENTROID_OFFSET_RATIO:
+    if (
+        share := area / plates.contact_area
+    ) < MIN_CONTACT_OVER_PLATE_AREA or offset > MAX_CENTROID_OFFSET_OVER_PLATE_SIZE:
         notes.append(
             f"the contact covers {share:.0%} of that rectangle, its centroid is off by {offset:.1%} of the "
             "plate size: plates of another outline have another stiffness"

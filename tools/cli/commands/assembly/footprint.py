@@ -195,9 +195,9 @@ def _collect_results(
 
 def _format_results(result_values: dict[str, Any], old_contact_area: float) -> list[str]:
     """Format the results of the imported pressure field as lines of text."""
-    from ....inputs.fields.sums import PRELOAD_RATIO_RANGE
+    from ....inputs.fields.sums import CASE_OVER_FIELD_PRELOAD_RANGE
 
-    low, high = PRELOAD_RATIO_RANGE
+    low, high = CASE_OVER_FIELD_PRELOAD_RANGE
     difference = 100.0 * (result_values["force"] / result_values["force_of_the_bolts"] - 1.0)
     lines = [
         f"{result_values['nodes']} nodes ({result_values['open_nodes']} open), pressure up to "

@@ -157,16 +157,16 @@ def _load_table_default(joint: str, scans: list[Path]) -> ParameterFile:
     return replace(load_default(joint, TABLE_LAW), roughness={}, name=name)
 
 
-def _needs_table(identification: "Identification", args: argparse.Namespace) -> bool:
+def _needs_table(identified_surface: "Identification", args: argparse.Namespace) -> bool:
     """Whether the joint gets the interface law `table`, because `--law` says so, or by default."""
     if args.params:
         return False
-    is_default = args.solve or not identification.is_gaussian
+    is_default = args.solve or not identified_surface.is_gaussian
     return args.law == TABLE_LAW or (args.law is None and is_default)
 
 
 def _find_points(
-    identification: "Identification", heights: list[Heights], args: argparse.Namespace
+    identified_surface: "Identification", heights: list[Heights], args: argparse.Namespace
 ) -> InterfacePoints:
     """Points of the interface law `table`: stiffness over pressure of the scanned surfaces.
 
@@ -178,20 +178,20 @@ def _find_points(
     sides = [ElasticConstants(**{name: row.numbers[name].value for name in ("E", "nu")}) for row in rows]
     hardness = min(row.numbers["H"].value for row in rows)
     materials = MaterialPair.from_sides(sides, hardness, [row.title for row in rows])
-    files = " and ".join(Path(name).name for name in identification.file_names)
+    files = " and ".join(Path(name).name for name in identified_surface.file_names)
     if not args.solve:
-        return points_from_tail(identification.bearing_curve, materials, files)
+        return points_from_tail(identified_surface.bearing_curve, materials, files)
     maps = []
-    for surface, scan in zip(heights, identification.scans, strict=True):
+    for surface, scan in zip(heights, identified_surface.scans, strict=True):
         if not isinstance(surface, ArealMap):
             raise InputRefusal(f"{surface.name}: is a profile; boundary elements need an areal map", "solve")
         maps.append(surface.with_heights(scan.sample.heights.reshape(surface.z.shape)))
     return points_from_solution(maps, args.side == "both", materials, files)
 
 
-def _check_rms_heights(identification: "Identification", accept_any_height: bool) -> None:
+def _check_rms_heights(identified_surface: "Identification", accept_any_height: bool) -> None:
     """Raise ValueError for rms heights above those of any machined surface: most often the unit is wrong."""
-    for name, scan in zip(identification.file_names, identification.scans, strict=True):
+    for name, scan in zip(identified_surface.file_names, identified_surface.scans, strict=True):
         if scan.rms_height > MAX_RMS_HEIGHT and not accept_any_height:
             raise InputRefusal(
                 f"{name}: the rms height is {1e6 * scan.rms_height:.4g} um, surfaces in contact have up to "

@@ -27,7 +27,7 @@ STATED_STIFFNESS_PRESSURE = 1e6
 
 
 def results_to_json(
-    identification: Identification,
+    identified_surface: Identification,
     heights: Sequence[Heights],
     parameter_file: ParameterFile | None,
     points: InterfacePoints | None,
@@ -40,13 +40,13 @@ def results_to_json(
     joints = reported_joints(args, parameter_file)
     judged = (judge_joint_stiffness(parameter_file) if parameter_file else Plausibility(None, ())).to_json()
     return {
-        "files": list(identification.file_names),
+        "files": list(identified_surface.file_names),
         "kind": "areal" if isinstance(heights[0], ArealMap) else "profile",
         "pair": len(heights) == 2,
-        "side": identification.side,
-        "textured": identification.is_textured,
+        "side": identified_surface.side,
+        "textured": identified_surface.is_textured,
         "form": args.form,
-        "roughness": _roughness_to_json(identification, parameter_file),
+        "roughness": _roughness_to_json(identified_surface, parameter_file),
         "repairs": [
             {
                 "file": n,
@@ -55,19 +55,19 @@ def results_to_json(
                 "points": r.total_points,
                 "effect": r.effect_note[2:],
             }
-            for n, r in identification.repairs
+            for n, r in identified_surface.repairs
         ],
-        "results": [_fractal_result_to_json(result, args.gamma) for result in identification.results],
-        "determined": {joint: undetermined_reason(identification, joint) is None for joint in joints},
+        "results": [_fractal_result_to_json(result, args.gamma) for result in identified_surface.results],
+        "determined": {joint: undetermined_reason(identified_surface, joint) is None for joint in joints},
         "not_determined": {
-            joint: why for joint in joints if (why := undetermined_reason(identification, joint))
+            joint: why for joint in joints if (why := undetermined_reason(identified_surface, joint))
         },
-        "joints": {joint: _joint_parameters_to_json(identification, joint, args) for joint in joints},
+        "joints": {joint: _joint_parameters_to_json(identified_surface, joint, args) for joint in joints},
         "law": parameter_file.law if parameter_file else None,
         "table": _points_to_json(points) if points else None,
         "level": judged["level"],
         "written": str(args.out) if args.out else None,
-        "warnings": [*collect_warnings(identification, parameter_file, args), *judged["warnings"]],
+        "warnings": [*collect_warnings(identified_surface, parameter_file, args), *judged["warnings"]],
     }
 
 
@@ -84,19 +84,19 @@ def _points_to_json(points: InterfacePoints) -> dict[str, object]:
 
 
 def _joint_parameters_to_json(
-    identification: Identification, joint_name: str, args: argparse.Namespace
+    identified_surface: Identification, joint_name: str, args: argparse.Namespace
 ) -> Mapping[str, float | None]:
     """Surface parameters of a joint: {name: value}; None if the scan does not determine them."""
-    determined = args.force or undetermined_reason(identification, joint_name) is None
-    values = fractal_parameters(identification, joint_name, args.method)
+    determined = args.force or undetermined_reason(identified_surface, joint_name) is None
+    values = fractal_parameters(identified_surface, joint_name, args.method)
     return {name: _finite_or_none(value) if determined else None for name, (value, _) in values.items()}
 
 
 def _roughness_to_json(
-    identification: Identification, parameter_file: ParameterFile | None
+    identified_surface: Identification, parameter_file: ParameterFile | None
 ) -> dict[str, object]:
     """JSON object of the roughness: heights of each scan and of both sides together, stiffness per area."""
-    h = find_combined_rms_height(identification, parameter_file)
+    h = find_combined_rms_height(identified_surface, parameter_file)
     return {
         "scans": [
             {
@@ -108,15 +108,15 @@ def _roughness_to_json(
                 "Sku" if scan.is_areal else "Rku": scan.sample.moment(4),
                 "slope": scan.slope,
             }
-            for name, scan in zip(identification.file_names, identification.scans, strict=True)
+            for name, scan in zip(identified_surface.file_names, identified_surface.scans, strict=True)
         ],
-        "longest_wave": identification.longest_wave,
-        "shortest_wave": identification.scans[0].shortest_wave,
+        "longest_wave": identified_surface.longest_wave,
+        "shortest_wave": identified_surface.scans[0].shortest_wave,
         "h": h,
-        "slope": identification.slope,
+        "slope": identified_surface.slope,
         "stiffness_per_MPa": predicted_stiffness(STATED_STIFFNESS_PRESSURE, h),
-        "gaussian": identification.is_gaussian,
-        "tail_stiffness_ratio": 1.0 / identification.tail_ratio,
+        "gaussian": identified_surface.is_gaussian,
+        "tail_stiffness_ratio": 1.0 / identified_surface.tail_ratio,
     }
 
 
@@ -158,9 +158,11 @@ def _finite_or_none(value: Number) -> float | None:
     return float(value) if math.isfinite(float(value)) else None
 
 
-def find_combined_rms_height(identification: Identification, parameter_file: ParameterFile | None) -> float:
+def find_combined_rms_height(
+    identified_surface: Identification, parameter_file: ParameterFile | None
+) -> float:
     """Rms height h [m] of both sides together: from the parameter file if it has one, else from the scans."""
-    return combined_height(parameter_file.roughness if parameter_file else {}) or identification.h
+    return combined_height(parameter_file.roughness if parameter_file else {}) or identified_surface.h
 
 
 def reported_joints(args: argparse.Namespace, parameter_file: ParameterFile | None) -> list[str]:
@@ -171,23 +173,23 @@ def reported_joints(args: argparse.Namespace, parameter_file: ParameterFile | No
 
 
 def collect_warnings(
-    identification: Identification, parameter_file: ParameterFile | None, args: argparse.Namespace
+    identified_surface: Identification, parameter_file: ParameterFile | None, args: argparse.Namespace
 ) -> list[str]:
     """Collect warnings about an identified surface and the parameter file written for it."""
-    lines = list(identification.warnings)
-    if parameter_file and parameter_file.law == ROUGHNESS_LAW and not identification.is_gaussian:
-        ratio = 1.0 / identification.tail_ratio
+    lines = list(identified_surface.warnings)
+    if parameter_file and parameter_file.law == ROUGHNESS_LAW and not identified_surface.is_gaussian:
+        ratio = 1.0 / identified_surface.tail_ratio
         lines.append(
             f"the heights are not Gaussian: the stiffness is about {ratio:.2g} times that of the law "
             f"{ROUGHNESS_LAW}; --table FILE writes it for jointfmu new --interface-table"
         )
     if not parameter_file or not args.out or parameter_file.law == TABLE_LAW:
         return lines
-    why = undetermined_reason(identification, parameter_file.joint)
+    why = undetermined_reason(identified_surface, parameter_file.joint)
     names = (
         "hurst"
         if parameter_file.law == ROUGHNESS_LAW
-        else ", ".join(fractal_parameters(identification, parameter_file.joint))
+        else ", ".join(fractal_parameters(identified_surface, parameter_file.joint))
     )
     alone = ["slope"] if parameter_file.law == ROUGHNESS_LAW else []
     if why and not args.force:
@@ -196,14 +198,16 @@ def collect_warnings(
         )
     else:
         alone.append(names)
-    if alone and len(identification.roughness_by_side) < len({name[-1] for name in parameter_file.roughness}):
-        side = f"values of side {identification.side} alone"
+    if alone and len(identified_surface.roughness_by_side) < len(
+        {name[-1] for name in parameter_file.roughness}
+    ):
+        side = f"values of side {identified_surface.side} alone"
         lines.append(f"{', '.join(alone)} are {side}; give both scans for the values of the pair")
     return lines
 
 
 def build_result(
-    identification: Identification,
+    identified_surface: Identification,
     heights: Sequence[Heights],
     parameter_file: ParameterFile | None,
     points: InterfacePoints | None,
@@ -216,22 +220,21 @@ def build_result(
     """
     lines = [
         f"{surface.name}: {synthesize.format_size(surface)}; {_format_scan(scan)}"
-        for surface, scan in zip(heights, identification.scans, strict=True)
+        for surface, scan in zip(heights, identified_surface.scans, strict=True)
     ]
-    lines.append(_format_stiffness(identification, parameter_file))
-    lines.append(_format_tail(identification))
+    lines.append(_format_stiffness(identified_surface, parameter_file))
+    lines.append(_format_tail(identified_surface))
     if points and args.solve:
         lines += _format_solution(points)
     if len(heights) == 2:
         lines.append("equivalent surface of the pair: structure functions and spectra added")
-    lines += [f"repaired in {name}: {repair}" for name, repair in identification.repairs]
+    lines += [f"repaired in {name}: {repair}" for name, repair in identified_surface.repairs]
     heads = ("method", "direction", "range [m]", "D, profile", "G, profile [m]", "D_s, surface", "G_s [m]")
-    lines += align_columns([heads, *(_format_fractal_row(result) for result in identification.results)])
+    lines += align_columns([heads, *(_format_fractal_row(result) for result in identified_surface.results)])
     lines.append("brackets: 95 % confidence intervals")
     for joint in reported_joints(args, parameter_file):
-        lines.append(
-            f"{joint} ({dimension_meaning(joint)}, {_format_fractal_parameters(identification, joint, args)}"
-        )
+        fractal = _format_fractal_parameters(identified_surface, joint, args)
+        lines.append(f"{joint} ({dimension_meaning(joint)}, {fractal}")
     judgement = (
         judge_joint_stiffness(parameter_file)
         if parameter_file and parameter_file.law not in (ROUGHNESS_LAW, TABLE_LAW)
@@ -240,10 +243,10 @@ def build_result(
     prefix = f"law {parameter_file.law}: " if parameter_file else ""
     texts = [
         *(f"{prefix}{text}" for text in judgement.warnings),
-        *collect_warnings(identification, parameter_file, args),
+        *collect_warnings(identified_surface, parameter_file, args),
     ]
     return CommandResult(
-        json_document=results_to_json(identification, heights, parameter_file, points, args),
+        json_document=results_to_json(identified_surface, heights, parameter_file, points, args),
         lines=[*lines, *(f"{prefix}{line}" for line in judgement.format_lines())],
         notes=[f"warning: {text}" for text in texts],
         written_files=(args.out, args.table, args.plot),
@@ -260,10 +263,10 @@ def _format_scan(scan: ScanRoughness) -> str:
     )
 
 
-def _format_tail(identification: Identification) -> str:
+def _format_tail(identified_surface: Identification) -> str:
     """Text on the effect of the skewness and kurtosis of the heights on the stiffness."""
-    ratio = 1.0 / identification.tail_ratio
-    if identification.is_gaussian:
+    ratio = 1.0 / identified_surface.tail_ratio
+    if identified_surface.is_gaussian:
         return f"highest points: as of Gaussian heights, stiffness {ratio:.2f} times p/(gamma h)"
     shape = "closer together (plateau)" if ratio > 1.0 else "farther apart (peaks)"
     return (
@@ -288,15 +291,15 @@ def _format_solution(points: InterfacePoints) -> list[str]:
     ]
 
 
-def _format_stiffness(identification: Identification, parameter_file: ParameterFile | None) -> str:
+def _format_stiffness(identified_surface: Identification, parameter_file: ParameterFile | None) -> str:
     """Line on the stiffness per area that the rms height predicts."""
-    h = find_combined_rms_height(identification, parameter_file)
+    h = find_combined_rms_height(identified_surface, parameter_file)
     known = {name[2] for name in parameter_file.roughness} if parameter_file else set()
     if (
         "h" in (parameter_file.roughness if parameter_file else ())
-        or len(known | {str(n) for n in identification.roughness_by_side}) == 2
+        or len(known | {str(n) for n in identified_surface.roughness_by_side}) == 2
     ):
-        what = "both sides" if identification.side != "both" else "two sides like it"
+        what = "both sides" if identified_surface.side != "both" else "two sides like it"
     else:
         what = "one side, the other smooth"
     return (
@@ -307,12 +310,12 @@ def _format_stiffness(identification: Identification, parameter_file: ParameterF
 
 
 def _format_fractal_parameters(
-    identification: Identification, joint_name: str, args: argparse.Namespace
+    identified_surface: Identification, joint_name: str, args: argparse.Namespace
 ) -> str:
     """Lines on D and G of all scans, as parameters of a joint."""
-    values = fractal_parameters(identification, joint_name, args.method)
+    values = fractal_parameters(identified_surface, joint_name, args.method)
     method = next(iter(values.values()))[1].method
-    why = undetermined_reason(identification, joint_name)
+    why = undetermined_reason(identified_surface, joint_name)
     if why and not args.force:
         return f"{method}): {', '.join(values)} not determined: {why}"
     return f"{method}): " + ", ".join(

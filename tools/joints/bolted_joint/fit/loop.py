@@ -54,15 +54,15 @@ START_VALUES: Mapping[str, Sequence[float]] = {"mu": (0.05, 0.15, 0.4), "surface
 value of the level follows from the data."""
 UNKNOWNS_OUTSIDE_JOINT = (hysteresis_fit.DAMPING_RATIO_NAME, SERIES_STIFFNESS_NAME)
 """Unknowns that are not parameters of the joint."""
-SERIES_STIFFNESS_START_RATIOS = (2.0, 1.1, 1.5, 5.0)
+SERIES_STIFFNESS_STARTS_OVER_REST_STIFFNESS = (2.0, 1.1, 1.5, 5.0)
 """Start values of the series stiffness over the measured stiffness at rest [1]."""
-MAX_TABLE_DISPLACEMENT_RATIO = 1.05
+TABLE_END_OVER_LOOP_AMPLITUDE = 1.05
 """Largest displacement of the tabulated law over the amplitude of the loops [1]."""
 PLAUSIBLE_FRICTION = (0.005, 3.0)
 """Friction coefficients [1] that are plausible for loops in gross slip."""
 _FIRST_LOADING_STEPS = 48
 """Number of steps of the table of first loading [1], finer near rest."""
-_ELASTIC_FIRST_LOADING_STEPS, _GROSS_SLIP_DISPLACEMENT_RATIO = 24, 4.0
+_ELASTIC_FIRST_LOADING_STEPS, _GROSS_SLIP_OVER_ELASTIC_DISPLACEMENT = 24, 4.0
 """Elastic sides: steps of the table, and displacement of gross slip over friction_limit/K_xx [1]."""
 
 
@@ -93,7 +93,7 @@ def make_shear_loop_law(
     motion, force, tangent_stiffness = separation * mu / kappa, mu * (load[0] - load), kappa * stiffness
     limit = float(mu * load[0])
     if joint.has_elastic_members:
-        gross_slip = _GROSS_SLIP_DISPLACEMENT_RATIO * limit / shear_stiffness_at_rest(joint, preload)
+        gross_slip = _GROSS_SLIP_OVER_ELASTIC_DISPLACEMENT * limit / shear_stiffness_at_rest(joint, preload)
         motion, force, tangent_stiffness = _first_loading_of_elastic_sides(
             joint, preload, gross_slip, float(motion[-1]), max_displacement
         )
@@ -253,7 +253,7 @@ def fit(
         """Series stiffness [N/m]: fitted or stated; None: rigid structure."""
         return parameter_values.get(SERIES_STIFFNESS_NAME, series_stiffness)
 
-    reach = MAX_TABLE_DISPLACEMENT_RATIO * data.amplitude if data.kind == "loops" else np.inf
+    reach = TABLE_END_OVER_LOOP_AMPLITUDE * data.amplitude if data.kind == "loops" else np.inf
 
     def make_law(parameter_values: Mapping[str, float]) -> HysteresisLaw:
         """Law of the loops with values of the fitted parameters."""
@@ -301,13 +301,21 @@ def fit(
     unknown_list = make_unknowns(file, [name for name in names if name not in UNKNOWNS_OUTSIDE_JOINT], {})
     unknown_list += [hysteresis_fit.UNKNOWN_DAMPING_RATIO] * (hysteresis_fit.DAMPING_RATIO_NAME in names)
     unknown_list += [
-        Unknown(SERIES_STIFFNESS_NAME, "N/m", SERIES_STIFFNESS_START_RATIOS[0] * measured_rest, 0.0, np.inf)
+        Unknown(
+            SERIES_STIFFNESS_NAME,
+            "N/m",
+            SERIES_STIFFNESS_STARTS_OVER_REST_STIFFNESS[0] * measured_rest,
+            0.0,
+            np.inf,
+        )
     ] * (SERIES_STIFFNESS_NAME in names)
     level = _exchange_stiffness_level(file, names, total_stiffness_at_rest)
     is_vibration_with_level = data.kind != "loops" and set(FITTED_PARAMETERS[file.law][1:]) <= set(names)
     starts = {
         **START_VALUES,
-        SERIES_STIFFNESS_NAME: [times * measured_rest for times in SERIES_STIFFNESS_START_RATIOS[1:]],
+        SERIES_STIFFNESS_NAME: [
+            times * measured_rest for times in SERIES_STIFFNESS_STARTS_OVER_REST_STIFFNESS[1:]
+        ],
     }
     is_joint_alone = series_stiffness is None and SERIES_STIFFNESS_NAME not in names
     is_corrected = data.kind == "loops" and file.values.has_elastic_members and is_joint_alone

@@ -22,7 +22,7 @@ from pathlib import Path
 import numpy as np
 
 from jointfmu.contact.interface import stiffness_curve
-from jointfmu.joints.bolted_joint.bolts import LIFT_OFF_STIFFNESS_FACTOR
+from jointfmu.joints.bolted_joint.bolts import LIFT_OFF_OVER_FULL_STIFFNESS
 from jointfmu.joints.bolted_joint.law import AnyBoltedJoint, preload_pressure, working_preload
 from jointfmu.joints.bolted_joint.variables import MODELS
 from jointfmu.mechanics.curve import tabulate_approach
@@ -92,7 +92,7 @@ def joint_stiffness(joint: AnyBoltedJoint, preload: Array, direction: str = "nor
     k[closing] = curve.derivatives(curve.inverse(p[closing]), 1)[1]
     normal = joint.A_0 * np.sum(shape.area_share * k, axis=-1)
     if direction == "normal":
-        pulling = np.where(working_preload(joint, preload) > 0.0, 1.0, LIFT_OFF_STIFFNESS_FACTOR)
+        pulling = np.where(working_preload(joint, preload) > 0.0, 1.0, LIFT_OFF_OVER_FULL_STIFFNESS)
         return np.asarray(normal + joint.n_bolts * joint.bolt_stiffness * pulling)
     return np.asarray(joint.shear_stiffness_ratio() * normal)
 

@@ -8,7 +8,7 @@ import numpy as np
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import TIGHTENING_TEMPERATURE
 from jointfmu.mechanics.curve import Curve
-from jointfmu.mechanics.footprint.reproducible import ROUND_OFF_RATIO
+from jointfmu.mechanics.footprint.reproducible import ROUND_OFF_OVER_LARGEST_NUMBER
 from jointfmu.mechanics.sliders import UNIFORM_DEVIATION, Foundation
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
@@ -29,12 +29,12 @@ from ....exchange.modelica.records import (
 
 DAMPING_TOLERANCE = 1e-3
 """Largest relative error [1] of the linearly interpolated dissipation factor."""
-MAX_CONTACT_FORCE_RATIO = 10.0
+MAX_CONTACT_OVER_TIGHTENING_FORCE = 10.0
 """Total contact force at the end of the table, over the contact force at tightening [1]."""
-PRELOADED_SLIDER_PAIR_COUNT, FIRST_SLIP_DISPLACEMENT_RATIO = 12, 2e-3
+PRELOADED_SLIDER_PAIR_COUNT, FIRST_OVER_GROSS_SLIP_DISPLACEMENT = 12, 2e-3
 """Number of slider pairs in contact at tightening, and slip displacement of the first pair over that of gross
 slip [1]. The slip displacements of the pairs form a geometric sequence."""
-FULL_CONTACT_FORCE_RATIOS = (2.0, 5.0)
+FULL_CONTACT_OVER_TIGHTENING_FORCES = (2.0, 5.0)
 """Normal forces over that at tightening [1] at which further pairs of sliders come into full contact.
 
 They are on the compression side."""
@@ -80,14 +80,18 @@ def combine_nodes(spring: BoltedJointSpring, preload: float, moment: float) -> C
     def total_force(approach_change: Array) -> list[Array]:
         """Total contact force [N] at a change of the approach [m] from the tightened state."""
         approach = start + approach_change[:, None]
-        approach[approach - low < ROUND_OFF_RATIO * (high - low)] = low  # nodes that just touch have no load
+        approach[approach - low < ROUND_OFF_OVER_LARGEST_NUMBER * (high - low)] = (
+            low  # nodes that just touch have no load
+        )
         nodal = spring.curve.derivatives(approach, 2)
         return [area * (value @ share) for value in nodal]
 
     preload_force = total_force(np.zeros(1))[0][0]
     first, last = float(low - np.max(start)), float(high - np.max(start))
     compression = np.linspace(0.0, last, 200)
-    end = float(np.interp(MAX_CONTACT_FORCE_RATIO * preload_force, total_force(compression)[0], compression))
+    end = float(
+        np.interp(MAX_CONTACT_OVER_TIGHTENING_FORCE * preload_force, total_force(compression)[0], compression)
+    )
     c = np.unique(
         np.concatenate(
             [np.linspace(first, 0.0, _FORCE_SAMPLE_COUNT), np.linspace(0.0, end, _FORCE_SAMPLE_COUNT)]
@@ -118,11 +122,11 @@ def combine_nodes(spring: BoltedJointSpring, preload: float, moment: float) -> C
     )
     damping = np.column_stack([table.rows[:, 0], np.interp(table.rows[:, 0], c, eta)])
     table.rows[:, 1] -= load[zero]
-    levels = [np.interp(factor * preload_force, load, c) for factor in FULL_CONTACT_FORCE_RATIOS]
+    levels = [np.interp(factor * preload_force, load, c) for factor in FULL_CONTACT_OVER_TIGHTENING_FORCES]
     heights = np.concatenate(
         [
             [first],
-            first * np.geomspace(1.0, FIRST_SLIP_DISPLACEMENT_RATIO, PRELOADED_SLIDER_PAIR_COUNT)[1:],
+            first * np.geomspace(1.0, FIRST_OVER_GROSS_SLIP_DISPLACEMENT, PRELOADED_SLIDER_PAIR_COUNT)[1:],
             [0.0],
             levels,
         ]
@@ -211,9 +215,9 @@ MODELICA_COMPONENT = ModelicaComponent(
     flanges=("flange_x", "flange_y", "flange_z"),
     make_template_texts=lambda joint: {
         "damping_tolerance": f"{DAMPING_TOLERANCE:g}",
-        "strongest": f"{MAX_CONTACT_FORCE_RATIO:g}",
+        "strongest": f"{MAX_CONTACT_OVER_TIGHTENING_FORCE:g}",
         "spread": f"{UNIFORM_DEVIATION:.15g}",
-        "sliders": f"{2 * (PRELOADED_SLIDER_PAIR_COUNT + len(FULL_CONTACT_FORCE_RATIOS))}",
+        "sliders": f"{2 * (PRELOADED_SLIDER_PAIR_COUNT + len(FULL_CONTACT_OVER_TIGHTENING_FORCES))}",
     },
 )
 """Modelica component of the bolted joint."""

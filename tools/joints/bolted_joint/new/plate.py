@@ -20,7 +20,7 @@ from . import ATTACHMENTS, layout, plate_finite_elements
 from .plate_finite_elements import BoltedPlates, compute_pressure_field
 from .tightening import find_preload
 from .washers import (
-    MAX_BEARING_RATIO,
+    MAX_BEARING_OVER_THREAD_DIAMETER,
     BoltWashers,
     bolt_distances,
     check_washers,
@@ -31,13 +31,13 @@ ZERO_MOTION = (0.0, 0.0, 0.0)
 """Zero displacement [m] or rotation [rad] along x, y, z."""
 THICKNESS_TOLERANCE = 1e-6
 """Relative difference [1] allowed between the grip and the sum of the thicknesses."""
-MAX_GRIP_RATIO = 50
+MAX_GRIP_OVER_THREAD_DIAMETER = 50
 """Largest grip over the diameter of the thread [1]: a longer bolt is a tie rod."""
-MAX_HOLE_RATIO = 3.0
+MAX_HOLE_OVER_THREAD_DIAMETER = 3.0
 """Largest diameter of the hole over that of the thread [1]."""
 UNSTATED_RZ = 10e-6
 """Maximum height Rz [m] of faces whose roughness is not stated, for embedding: the usual one of Ra 1.6 um."""
-THREAD_DEPTH_RATIO = 1.0
+THREAD_DEPTH_OVER_DIAMETER = 1.0
 """Depth of a tapped thread over the diameter of the thread [1]: a usual value in steel."""
 
 
@@ -131,7 +131,7 @@ def make_joint(options: DrawingOptions) -> NewJoint:
     layers, depth = bolt.clamped_parts, 0.0
     if options["tapped"] and options["thickness"] is not None:
         layers = (*layers, vdi2230.ClampedPart(_plate_thicknesses(options)[1], moduli[1]))
-        depth = THREAD_DEPTH_RATIO * thread.nominal_diameter
+        depth = THREAD_DEPTH_OVER_DIAMETER * thread.nominal_diameter
     plates = BoltedPlates(plate, layers, bolt.bearing_diameter, density, preload, preload - loss, depth)
     shape = None
     if options["field"] == "computed":
@@ -188,8 +188,8 @@ def clamp_bolt(
     washers = find_washers(options, thread)
     head_hole = washers.washer.hole_diameter if washers else hole_diameter
     for name, value, low, ratio in (
-        ("hole", hole_diameter, thread.nominal_diameter, MAX_HOLE_RATIO),
-        ("bearing", bearing, head_hole, MAX_BEARING_RATIO),
+        ("hole", hole_diameter, thread.nominal_diameter, MAX_HOLE_OVER_THREAD_DIAMETER),
+        ("bearing", bearing, head_hole, MAX_BEARING_OVER_THREAD_DIAMETER),
     ):
         high = ratio * thread.nominal_diameter
         if not low < value <= high:
@@ -207,11 +207,11 @@ def clamp_bolt(
         pair = thicknesses if len(thicknesses) == 2 else [0.5 * thicknesses[0]] * 2
         layers = tuple(vdi2230.ClampedPart(t, E) for t, E in zip(pair, young_moduli, strict=True))
     grip = float(sum(layer.thickness for layer in layers))
-    if grip > MAX_GRIP_RATIO * thread.nominal_diameter:
-        longest_grip = MAX_GRIP_RATIO * thread.nominal_diameter * 1e3
+    if grip > MAX_GRIP_OVER_THREAD_DIAMETER * thread.nominal_diameter:
+        longest_grip = MAX_GRIP_OVER_THREAD_DIAMETER * thread.nominal_diameter * 1e3
         raise ValueError(
-            f"--grip = {grip * 1e3:g} mm is outside (0, {longest_grip:g}] mm: {MAX_GRIP_RATIO} "
-            f"times {thread.name}"
+            f"--grip = {grip * 1e3:g} mm is outside (0, {longest_grip:g}] mm: "
+            f"{MAX_GRIP_OVER_THREAD_DIAMETER} times {thread.name}"
         )
     outer = outer_diameter(plate_size, bolt_positions)
     length = grip + washers.length if washers else grip

@@ -11,9 +11,9 @@ from ....inputs.drawing.quantities import parse_values
 from ....inputs.drawing.tables import Thread, Washer, find_washer
 from . import STANDARD_WASHERS
 
-MAX_BEARING_RATIO = 8.0
+MAX_BEARING_OVER_THREAD_DIAMETER = 8.0
 """Largest diameter of a bearing face over that of the thread [1]; washers of ISO 7094 have 4."""
-MAX_WASHER_THICKNESS_RATIO = 1.0
+MAX_WASHER_THICKNESS_OVER_THREAD_DIAMETER = 1.0
 """Largest thickness of a washer over the diameter of the thread [1]: a thicker one is a spacer."""
 
 
@@ -66,8 +66,8 @@ def check_washers(washers: BoltWashers, thread: Thread, head_diameter: float, bo
     """
     d, washer = thread.nominal_diameter, washers.washer
     for noun, value, low, high in (
-        ("outer diameter", washer.outer_diameter, head_diameter, MAX_BEARING_RATIO * d),
-        ("thickness", washer.thickness, 0.0, MAX_WASHER_THICKNESS_RATIO * d),
+        ("outer diameter", washer.outer_diameter, head_diameter, MAX_BEARING_OVER_THREAD_DIAMETER * d),
+        ("thickness", washer.thickness, 0.0, MAX_WASHER_THICKNESS_OVER_THREAD_DIAMETER * d),
     ):
         if not low < value <= high:
             raise ValueError(

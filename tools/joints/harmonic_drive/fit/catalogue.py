@@ -16,7 +16,7 @@ import numpy as np
 
 from jointfmu.joints.harmonic_drive.drive import DriveParameters
 from jointfmu.joints.harmonic_drive.prescribed_midline import (
-    DEFAULT_CORNER_HALF_WIDTH_RATIO,
+    DEFAULT_CORNER_HALF_WIDTH_OVER_WIND_UP,
     CatalogueDriveParameters,
 )
 from jointfmu.parameters import ParameterFile, load_default
@@ -40,7 +40,7 @@ EXACT_ANGLE_STANDARD_DEVIATIONS = (2e-2, 1e-2, 5e-3, 2e-3, 1e-3, 5e-4)
 the fitted angles are within MAX_ANGLE_ERROR."""
 OTHER_ANGLE_STANDARD_DEVIATION = 0.2
 """Relative standard deviation [1] of the angle at other torques: real drives have no corners."""
-MAX_TORQUE_RATIO = 4.0
+TABLE_END_OVER_RATED_TORQUE = 4.0
 """Largest torque of the table (max_torque) over rated torque [1]: about the peak torque of catalogues."""
 
 
@@ -116,7 +116,9 @@ def fit_contact_pair_law(
     file = start_parameters or load_default("harmonic_drive")
     rated = sourced_numbers["rated_torque"]
     origin = sourced_numbers["T1"].source
-    file = drive.resize_drive(file, catalogue_row.rated, MAX_TORQUE_RATIO, rated.kind, rated.source)
+    file = drive.resize_drive(
+        file, catalogue_row.rated, TABLE_END_OVER_RATED_TORQUE, rated.kind, rated.source
+    )
     if "ratio" in sourced_numbers:
         file = file.with_values({"ratio": sourced_numbers["ratio"].value}, "catalogue", origin)
     file = file.with_values({EXTRA_FITTED_PARAMETER: catalogue_row.T1}, "catalogue", f"T1 of {origin}")
@@ -219,7 +221,7 @@ def make_drive_with_catalogue_law(
         text = "default choice: the angle at the corners of catalogue drives within 0.4 %"
         sourced_numbers = {
             **sourced_numbers,
-            "corner": SourcedNumber(DEFAULT_CORNER_HALF_WIDTH_RATIO, "user", text),
+            "corner": SourcedNumber(DEFAULT_CORNER_HALF_WIDTH_OVER_WIND_UP, "user", text),
         }
     return drive.change_law(file, CatalogueDriveParameters, drive_name, sourced_numbers, kept)
 
@@ -239,8 +241,8 @@ def make_drive_with_catalogue_law_from_row(
     """
     if fitted_names:
         raise ValueError("the law catalogue has nothing to fit; --free is allowed with --law hu2023")
-    max_torque = MAX_TORQUE_RATIO * catalogue_row.rated
-    largest = SourcedNumber(max_torque, "estimate", f"{MAX_TORQUE_RATIO:g} times rated_torque")
+    max_torque = TABLE_END_OVER_RATED_TORQUE * catalogue_row.rated
+    largest = SourcedNumber(max_torque, "estimate", f"{TABLE_END_OVER_RATED_TORQUE:g} times rated_torque")
     file = make_drive_with_catalogue_law(
         source,
         {**(sourced_numbers or make_sourced_numbers(catalogue_row)), "max_torque": largest},
@@ -295,7 +297,7 @@ def _angle_errors(
 
 def _max_torque_fact(catalogue_row: CatalogueRow, max_torque: float) -> FitFacts:
     """Fact about the end of the fitted law: max_torque."""
-    text = f"{MAX_TORQUE_RATIO:g} times the rated torque {catalogue_row.rated:g} N.m"
+    text = f"{TABLE_END_OVER_RATED_TORQUE:g} times the rated torque {catalogue_row.rated:g} N.m"
     return {"max_torque": (max_torque, "N.m", text)}
 
 

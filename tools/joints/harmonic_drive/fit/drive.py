@@ -28,7 +28,7 @@ STIFFNESS_PARAMETERS: Mapping[str, tuple[str, ...]] = {
     "catalogue": ("K1", "K2", "K3"),
 }
 """{law: parameters}; one factor on all of these scales K_WTS (Hu 2023, Eq. 46)."""
-MIN_PRESSURE_RATIO = 0.05
+MIN_ZERO_TORQUE_OVER_RATED_PRESSURE = 0.05
 """Lower bound in a fit of the peak pressure at zero torque, over that at rated torque [1]."""
 
 
@@ -138,7 +138,7 @@ def parameter_bounds(start_file: ParameterFile) -> Mapping[str, tuple[float, flo
     if not isinstance(drive, ContactPairDriveParameters):
         return {}
     rated, loss = drive.rated_pressure, drive.peak_pressure_reduction
-    lowest = loss + MIN_PRESSURE_RATIO * rated
+    lowest = loss + MIN_ZERO_TORQUE_OVER_RATED_PRESSURE * rated
     return {
         "zero_torque_pressure": (lowest, rated),
         "rated_pressure": (drive.zero_torque_pressure, np.inf),

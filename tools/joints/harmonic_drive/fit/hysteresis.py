@@ -46,7 +46,7 @@ DEFAULT_START_VALUES = {HYSTERESIS_LOSS_NAME: RAD_PER_ARCMIN, HYSTERESIS_STIFFNE
 """Start values if the file has no hysteresis: loss [rad], and stiffness over K_WTS at zero torque [1]."""
 LOSS_START_VALUES = tuple(RAD_PER_ARCMIN * np.geomspace(0.03, 10.0, 7))
 """Further start values of the hysteresis loss [rad]."""
-STIFFNESS_START_RATIOS = (0.3, 1.0, 3.0, 10.0)
+HYSTERESIS_STIFFNESS_STARTS_OVER_DRIVE_STIFFNESS = (0.3, 1.0, 3.0, 10.0)
 """Start values of the hysteresis stiffness over K_WTS at zero torque [1], besides that of the file."""
 
 
@@ -113,7 +113,7 @@ def fit(
     model = hysteresis_fit.build_model(data, make_law_with_values, "inertia", inertia, 0.0)
     starts = {
         HYSTERESIS_LOSS_NAME: LOSS_START_VALUES,
-        HYSTERESIS_STIFFNESS_NAME: tuple(rest * np.array(STIFFNESS_START_RATIOS)),
+        HYSTERESIS_STIFFNESS_NAME: tuple(rest * np.array(HYSTERESIS_STIFFNESS_STARTS_OVER_DRIVE_STIFFNESS)),
     }
     solution, scale, _ = hysteresis_fit.fit_measurement(
         data, make_unknowns(file, names, drive.parameter_bounds(file)), model, starts
@@ -159,7 +159,7 @@ ROTOR_INERTIA_NAME = "motor_inertia"
 """Name of the unknown inertia of the rotor, which is fitted if the user does not state it."""
 DEFAULT_HYSTERESIS_LOSS = 0.3 * RAD_PER_ARCMIN
 """Start value of hysteresis_loss [rad] if the file has no hysteresis."""
-LOWER_BOUND_RATIO = 1e-2
+LOWER_BOUND_OVER_START_VALUE = 1e-2
 """Lower bound of hysteresis loss and of rotor inertia, over their start values [1]."""
 IGNORED_FIRST_SAMPLES = 10
 """Number of first samples that are ignored, because the history of the hysteresis is unknown there."""
@@ -191,7 +191,11 @@ def fit_rotor_inertia(
     """
     names = [name for name in ROBOT_LOG_FITTED_PARAMETERS if name in parameter_file.values_by_name]
     unknown = Unknown(
-        ROTOR_INERTIA_NAME, "kg.m2", 0.1 * max_inertia, LOWER_BOUND_RATIO * max_inertia, max_inertia
+        ROTOR_INERTIA_NAME,
+        "kg.m2",
+        0.1 * max_inertia,
+        LOWER_BOUND_OVER_START_VALUE * max_inertia,
+        max_inertia,
     )
     solution, _ = _fit_wind_ups(
         parameter_file,
@@ -276,7 +280,12 @@ def _fit_wind_ups(
         *make_unknowns(
             start,
             fitted_names,
-            {HYSTERESIS_LOSS_NAME: (LOWER_BOUND_RATIO * start.values_by_name[HYSTERESIS_LOSS_NAME], np.inf)},
+            {
+                HYSTERESIS_LOSS_NAME: (
+                    LOWER_BOUND_OVER_START_VALUE * start.values_by_name[HYSTERESIS_LOSS_NAME],
+                    np.inf,
+                )
+            },
         ),
         *extra_unknowns,
     ]

@@ -38,12 +38,19 @@ from .log_friction import (
     refit_without_undetermined,
     select_parameters,
 )
-from .log_reading import COLUMN_UNITS, MIN_SPEED_RANGE_RATIO, Samples, join_samples, make_log, read_table
+from .log_reading import (
+    COLUMN_UNITS,
+    MIN_LARGEST_OVER_SMALLEST_SPEED,
+    Samples,
+    join_samples,
+    make_log,
+    read_table,
+)
 from .log_ripple import add_ripples, find_ripple_terms, fitted_ripples
 
 CONFIDENCE_LEVEL = 0.95
 """Confidence level of the intervals [1]."""
-MAX_ROTOR_INERTIA_RATIO, MAX_ROTOR_INERTIA_DEVIATIONS = 1.1, 4.0
+MAX_ROTOR_OVER_TOTAL_INERTIA, MAX_ROTOR_INERTIA_DEVIATIONS = 1.1, 4.0
 """Bound of the stated rotor inertia: first value times the fitted total inertia, plus second value times the
 standard deviation of the total inertia [1]."""
 
@@ -292,7 +299,7 @@ def _fitted_file(
 def _check_rotor_inertia(rotor_inertia: float, fitted_log: FittedLogFriction) -> None:
     """Check the rotor inertia [kg.m2]. Raises ValueError if it exceeds the total inertia in the log."""
     at_joint = rotor_inertia * fitted_log.drive.ratio**2
-    limit = MAX_ROTOR_INERTIA_RATIO * fitted_log.total_inertia + MAX_ROTOR_INERTIA_DEVIATIONS * float(
+    limit = MAX_ROTOR_OVER_TOTAL_INERTIA * fitted_log.total_inertia + MAX_ROTOR_INERTIA_DEVIATIONS * float(
         np.sqrt(fitted_log.covariance[0, 0])
     )
     if at_joint > limit:
@@ -428,7 +435,7 @@ def _catalogue_drive(drive_name: str, ratio: float | None) -> ParameterFile:
 def _check_speeds(file_label: str, samples: Samples) -> None:
     """Raise ValueError if the speeds of a log are too similar to separate the parts of the friction.
 
-    The largest joint speed must be at least MIN_SPEED_RATIO times the smallest one.
+    The largest joint speed must be at least MIN_LARGEST_OVER_SMALLEST_SPEED times the smallest one.
     """
     speed = np.abs(samples.dq)
     speed = speed[speed > 0.0]
@@ -436,11 +443,11 @@ def _check_speeds(file_label: str, samples: Samples) -> None:
         raise ValueError(
             f"{file_label}: never turns on long enough for friction to build up; expected longer motion"
         )
-    if speed.max() < MIN_SPEED_RANGE_RATIO * speed.min():
+    if speed.max() < MIN_LARGEST_OVER_SMALLEST_SPEED * speed.min():
         raise ValueError(
             f"{file_label}: has one speed alone, {speed.min():.4g} to {speed.max():.4g} rad/s; "
             "expected several, "
-            f"{MIN_SPEED_RANGE_RATIO:g} times as fast or more"
+            f"{MIN_LARGEST_OVER_SMALLEST_SPEED:g} times as fast or more"
         )
 
 

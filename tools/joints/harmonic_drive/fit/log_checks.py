@@ -16,7 +16,7 @@ TORQUE_SCALE_RANGE = (1.0 / 3.0, 3.0)
 """Allowed range of the motor torque times ratio over the torque at the joint [1]."""
 MIN_SCALE_CORRELATION = 0.7
 """Correlation of motor torque and torque at the joint [1], above which their ratio is judged."""
-MAX_FRICTION_FACTOR = 5.0
+MAX_FITTED_OVER_START_FRICTION = 5.0
 """Factor [1] between fitted friction and friction of the start file, above which the fit is doubtful."""
 GRAVITY_HARMONICS = 3
 """Harmonics of the joint angle in gravity: an arm has one, springs and cables add some."""
@@ -86,7 +86,10 @@ def doubt_about_friction(
         float(motor_friction(drive, speed, np.full(1, REFERENCE_TEMPERATURE), nothing)[0])
         for drive in (fitted_log.drive, start_drive)
     )
-    if not expected > 0.0 or 1.0 / MAX_FRICTION_FACTOR < fitted / expected < MAX_FRICTION_FACTOR:
+    if (
+        not expected > 0.0
+        or 1.0 / MAX_FITTED_OVER_START_FRICTION < fitted / expected < MAX_FITTED_OVER_START_FRICTION
+    ):
         return None
     check = "the unit of tau" if torque_constant is None else f"--torque-constant = {torque_constant:g} N.m/A"
     return (

@@ -134,7 +134,7 @@ FIRST_FIT_SAMPLES = 1000
 samples."""
 MIN_TEMPERATURE_RANGE = 5.0
 """Range of temperatures [K] that a log needs for a fit of the temperature coefficients."""
-MIN_LOAD_RATIO = 0.02
+MIN_LOAD_OVER_RATED_TORQUE = 0.02
 """Largest load of a log over the rated torque [1], from which load-dependent losses are fitted."""
 START_VALUES = {
     LOAD_LOSS_NAME: 0.05,
@@ -143,7 +143,7 @@ START_VALUES = {
     TEMPERATURE_COEFFICIENT_NAMES[1]: 0.01,
 }
 """Start values if the file has 0: losses [1], temperature coefficients [1/K]."""
-LOWER_BOUND_RATIO = 1e-3
+LOWER_BOUND_OVER_START_VALUE = 1e-3
 """Lower bound of a fitted parameter over its start value [1]."""
 UNDETERMINED_DEVIATION_FACTOR, MAX_RESIDUAL_INCREASE = 2.0, 2.0
 """Standard deviation of a parameter, as a factor [1], above which it may be undetermined; and increase of the
@@ -238,11 +238,13 @@ def select_parameters(
     load = terms.tooth_load(
         samples, linear[2:], abs(drive.ratio), rotor_inertia
     )  # with constant dry and viscous friction
-    if np.max(np.abs(load)) < MIN_LOAD_RATIO * drive.rated_torque:
-        text = f"the load stays below {MIN_LOAD_RATIO:g} times the rated torque"
+    if np.max(np.abs(load)) < MIN_LOAD_OVER_RATED_TORQUE * drive.rated_torque:
+        text = f"the load stays below {MIN_LOAD_OVER_RATED_TORQUE:g} times the rated torque"
         reasons |= {LOAD_LOSS_NAME: text, BACK_DRIVING_LOSS_NAME: text}
     else:
-        back_driven = load * samples.dq < -MIN_LOAD_RATIO * drive.rated_torque * np.abs(samples.dq)
+        back_driven = load * samples.dq < -MIN_LOAD_OVER_RATED_TORQUE * drive.rated_torque * np.abs(
+            samples.dq
+        )
         if drive.load_loss_back < 0.0:
             reasons[BACK_DRIVING_LOSS_NAME] = "the start file sets it equal to load_loss"
         elif not back_driven.any():
@@ -293,7 +295,7 @@ def fit_samples(
     changed = parameter_file.with_values(
         {n: v for n, v in start_values.items() if n in fitted_names}, "calibration", "start"
     )
-    bounds = {name: (LOWER_BOUND_RATIO * value, np.inf) for name, value in start_values.items()}
+    bounds = {name: (LOWER_BOUND_OVER_START_VALUE * value, np.inf) for name, value in start_values.items()}
     noise = None
     step = samples.dq.size // FIRST_FIT_SAMPLES
     if step > 1:

@@ -28,9 +28,9 @@ FILTER_WINDOW, FILTER_DEGREE = 0.04, 4
 FILTER_NODE_COUNT = 9
 """Number of speeds in a window at which friction is evaluated and filtered; smallest number of samples of a
 window."""
-DEVELOPED_FRICTION_ROTATION_RATIO = 5.0
+DEVELOPED_FRICTION_ROTATION_OVER_PRESLIDING = 5.0
 """Rotation of the motor since a reversal over `presliding` [1] after which friction is developed to 99 %."""
-MIN_SPEED_RANGE_RATIO = 1.2
+MIN_LARGEST_OVER_SMALLEST_SPEED = 1.2
 """Largest speed over smallest speed [1] that a log must exceed."""
 
 
@@ -178,8 +178,8 @@ def _is_friction_developed(
 ) -> NDArray[np.bool_]:
     """Mask (n) of samples with fully developed friction.
 
-    The motor has rotated by DEVELOPED_FRICTION_ROTATION_RATIO times `presliding` since its last reversal, and
-    no reversal lies within the window of the filter (`window_width` samples).
+    The motor has rotated by DEVELOPED_FRICTION_ROTATION_OVER_PRESLIDING times `presliding` since its last
+    reversal, and no reversal lies within the window of the filter (`window_width` samples).
     """
     sign = np.sign(joint_speed)
     run = np.concatenate([[0], np.cumsum(np.diff(sign) != 0.0)])
@@ -188,7 +188,9 @@ def _is_friction_developed(
     index = np.arange(joint_speed.size)
     rotation = np.concatenate([[0.0], np.cumsum(np.abs(joint_speed[1:]))]) * time_step * abs(drive.ratio)
     before, after = index - first[run], last[run] - 1 - index
-    developed = rotation - rotation[first[run]] > DEVELOPED_FRICTION_ROTATION_RATIO * drive.presliding
+    developed = (
+        rotation - rotation[first[run]] > DEVELOPED_FRICTION_ROTATION_OVER_PRESLIDING * drive.presliding
+    )
     return np.asarray(developed & (before > window_width // 2) & (after > window_width // 2) & (sign != 0.0))
 
 
@@ -234,7 +236,7 @@ MAX_MOTOR_SPEED = 2000.0
 """Largest plausible speed of a wave generator [rad/s]: catalogues allow up to 14 000 rev/min."""
 MAX_CURRENT = 1e3
 """Largest plausible motor current [A]."""
-MAX_TORQUE_RATIO = 3.0
+MAX_MOTOR_OVER_DRIVE_TORQUE = 3.0
 """Largest plausible motor torque over max_torque/ratio [1]."""
 MIN_MOTOR_SPEED = 1e-3
 """Motor speed [rad/s] below which a log has no motion."""
@@ -429,7 +431,7 @@ def _check_samples(path: Path, samples: Samples, drive: DriveParameters) -> None
         raise ValueError(
             f"{path}: has no motion; expected speeds of the joint above {MIN_MOTOR_SPEED / ratio:.2g} rad/s"
         )
-    limit = MAX_TORQUE_RATIO * float(drive.max_table_torque) / ratio
+    limit = MAX_MOTOR_OVER_DRIVE_TORQUE * float(drive.max_table_torque) / ratio
     largest = float(np.max(np.abs(samples.motor_torque)))
     if largest > limit:
         raise ValueError(

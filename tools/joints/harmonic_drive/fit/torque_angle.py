@@ -34,7 +34,7 @@ FITTED_PARAMETERS = ("K_FTS0", "drive_scale", "zero_torque_pressure")
 """Parameters to fit; of the law `catalogue` they are K1, K2, K3."""
 MIN_POINTS = 10
 """Required number of points of a curve."""
-MAX_CREATED_ENERGY_RATIO = 0.01
+MAX_CREATED_ENERGY_OVER_TORQUE_ANGLE_RANGE = 0.01
 """Created energy of a loop, from noise or drift, over torque range times angle range [1] that is accepted."""
 
 
@@ -211,7 +211,9 @@ def _check_wind_up_and_loop_energy(
         )
     if midline.loop_area is not None:
         area, deviation = midline.loop_area
-        if area < -max(3.0 * deviation, MAX_CREATED_ENERGY_RATIO * torque_range * angle_range):
+        if area < -max(
+            3.0 * deviation, MAX_CREATED_ENERGY_OVER_TORQUE_ANGLE_RANGE * torque_range * angle_range
+        ):
             raise ValueError(
                 f"{path}: the loop creates energy, loop_area = {area:.3g} J, expected 0 or more: the angle "
                 "must lag behind the torque; reverse the order of the rows if their time order is reversed"

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from jointfmu.joints.harmonic_drive.drive import PLAY_WIDTH_RATIO, DriveParameters
+from jointfmu.joints.harmonic_drive.drive import PLAY_OVER_RATED_TORQUE, DriveParameters
 from jointfmu.joints.harmonic_drive.friction import (
     PRIOR_ROTATION_TIME,
     REFERENCE_TEMPERATURE,
@@ -81,7 +81,7 @@ MODELICA_COMPONENT = ModelicaComponent(
         "brakes": format_matrix(np.column_stack([SLIDER_STIFFNESS_SHARES, SLIDER_LIMIT_SHARES])),
         "turned": format_number(PRIOR_ROTATION_TIME),
         "reference": format_number(REFERENCE_TEMPERATURE),
-        "width": format_number(PLAY_WIDTH_RATIO),
+        "width": format_number(PLAY_OVER_RATED_TORQUE),
     },
     package_note="For the drive with a locked wave generator (the FMU "
     "<code>HarmonicDriveCompliance</code>) fix "
