@@ -121,7 +121,7 @@ def test_a_bracket_slips_under_a_lever_as_its_elements_do(monkeypatch):
     """
     fine = JointFiniteElements.from_assembly
     monkeypatch.setattr(
-        JointFiniteElements, "from_assembly", lambda assembly, attached, *_: fine(assembly, attached, 0.7)
+        JointFiniteElements, "from_assembly", lambda assembly, attached, **_: fine(assembly, attached, 0.7)
     )
     attached, drawing, wrench = JOINTS["bracket"]
     joint = PlateJoint.of(attached, drawing, elements=True)
