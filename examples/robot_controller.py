@@ -1,4 +1,4 @@
-"""A joint controller tuned on the rigid arm, on constant springs and on the FMU of the arm: what each does there.
+"""A joint controller tuned on the rigid arm, on constant springs and on the FMU of the arm, and its ringing.
 
 The builds of the FMU take a few minutes. Needs the extra `mujoco`.
 """
@@ -142,8 +142,8 @@ figure, axes = plt.subplots(layout="constrained")
 print("tuned on          bandwidth [Hz]  ringing there [mm]  on the FMU [mm]")
 for name, simulate in models.items():
     bandwidth = tune(simulate)
-    moved = simulate_fmu(bandwidth)
-    print(f"{name:17} {bandwidth:14.1f}  {1e3 * ringing(simulate(bandwidth)):18.3f}  {1e3 * ringing(moved):15.3f}")
+    tuned, moved = simulate(bandwidth), simulate_fmu(bandwidth)
+    print(f"{name:17} {bandwidth:14.1f}  {1e3 * ringing(tuned):18.3f}  {1e3 * ringing(moved):15.3f}")
     axes.plot(STEP * np.arange(len(moved)), 1e3 * moved[:, 2], label=f"{name}, {bandwidth:.0f} Hz")
 axes.set(xlabel="time [s]", ylabel="height of the tip on the FMU [mm]")
 axes.legend(frameon=False)

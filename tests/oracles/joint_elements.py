@@ -147,7 +147,7 @@ class PlateJoint:
             if refinement != 1.0:
                 return real(file, plates, to, shape)
             with (  # the command's own finite elements are these
-                patch.object(JointFiniteElements, "from_assembly", lambda *_: joint),
+                patch.object(JointFiniteElements, "from_assembly", lambda *_, **__: joint),
                 patch.object(JointFiniteElements, "linearize", lambda *_: linear),
             ):
                 return real(file, plates, to, shape)

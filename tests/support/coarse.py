@@ -5,7 +5,6 @@ Coarse ones are for tests of what does not depend on the resolution.
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from functools import partial
 from typing import Any
 
 import pytest
@@ -19,8 +18,13 @@ def _replaced(owner: Any, name: str, value: Any) -> Iterator[None]:
 
 
 def elements(of: Any, refinement: float) -> Any:
-    """Mesh the bodies of a class, `BoltedContact` or `JointFiniteElements`, with this refinement [1]."""
-    return _replaced(of, "from_assembly", partial(of.from_assembly, refinement=refinement))
+    """Multiply the refinement [1] of the bodies of a class, `BoltedContact` or `JointFiniteElements`."""
+    mesh = of.from_assembly
+
+    def mesh_coarsely(*arguments: Any, **keywords: Any) -> Any:
+        return mesh(*arguments, **keywords | {"refinement": refinement * keywords.get("refinement", 1.0)})
+
+    return _replaced(of, "from_assembly", mesh_coarsely)
 
 
 def interface_alone() -> Any:

@@ -72,13 +72,16 @@ class BoltedContact:
 
 
 def make_elastic_body(
-    plan_mesh: PlanMesh, assembly: Assembly, side: int, refinement: float = 1.0
+    plan_mesh: PlanMesh,
+    assembly: Assembly,
+    side: int,
+    refinement: float = 1.0,
+    first_height: float | None = None,
 ) -> ElasticBody:
-    """Elastic body on side 1 or 2 of an assembly, extruded from a plan mesh."""
+    """Elastic body on side 1 or 2 of an assembly, extruded from a plan mesh (see `extrude_body_mesh`)."""
     body: BodyGeometry = assembly.side1 if side == 1 else assembly.side2
-    return ElasticBody(
-        extrude_body_mesh(plan_mesh, assembly, side, refinement), body.E, body.nu, body.density
-    )
+    mesh = extrude_body_mesh(plan_mesh, assembly, side, refinement, first_height)
+    return ElasticBody(mesh, body.E, body.nu, body.density)
 
 
 def compute_bolt_head_loads(body: ElasticBody, assembly: Assembly) -> Array:

@@ -4,6 +4,7 @@ Both bodies share the plan mesh of quadrilaterals, so their nodes coincide on th
 a hole is a polygon with the area of the circle.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,8 +22,12 @@ ELEMENTS_ACROSS_NARROWEST_STRIP = 4
 """Number of elements across the narrowest strip of the contact, at refinement 1."""
 HOLE_WALL_DIAMETER_RATIO = 1.02
 """Diameter within which a facet counts as wall of a hole, over the diameter of the hole [1]."""
+ELEMENT_SIZE_GROWTH = 0.35
+"""Increase of twice the element size over the distance from the hole [1]."""
 ELEMENTS_THROUGH_THICKNESS = 2
 """Number of elements through the thickness of the layer at the contact, at refinement 1."""
+LAYER_GROWTH = 2.5
+"""Ratio of the heights of two successive elements below a rigid bolt head [1]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,40 +84,52 @@ def mesh_plan_view(assembly: Assembly, refinement: float = 1.0) -> PlanMesh:
     """
     import gmsh
 
-    size_at_holes, max_size = element_sizes(assembly, refinement)
     gmsh.initialize(interruptible=False)
     try:
-        gmsh.option.setNumber("General.Terminal", 0)
+        set_mesh_options()
         _draw_plan_view(gmsh.model, assembly)
-        _set_element_sizes(gmsh.model, assembly, size_at_holes, max_size)
-        for name, value in (
-            ("Algorithm", 8),
-            ("RecombineAll", 1),
-            ("RecombinationAlgorithm", 1),
-            ("SubdivisionAlgorithm", 1),
-            ("Smoothing", 10),
-            ("RandomSeed", 1),
-        ):
-            gmsh.option.setNumber(f"Mesh.{name}", value)
+        set_element_sizes(gmsh.model, assembly, refinement)
         gmsh.model.mesh.generate(2)
-        points, cells = _read_quadrilaterals(gmsh.model)
+        points, cells = read_quadrilaterals(gmsh.model)
     finally:
         gmsh.finalize()
-    _match_hole_areas(points, assembly)
+    match_circle_areas(points, assembly.bolts.positions, [0.5 * assembly.bolts.hole_diameter])
     centre = points[:, cells].mean(axis=1)
     distance = np.hypot(*(centre[:, None, :] - assembly.bolts.positions.T[:, :, None]))
     return PlanMesh(points, cells, distance.min(axis=0) < 0.5 * assembly.bolts.hole_diameter)
 
 
-def _match_hole_areas(points: Array, assembly: Assembly) -> None:
-    """Move the corners of the hole polygons outward, in place: each polygon gets the area of its circle."""
-    radius = 0.5 * assembly.bolts.hole_diameter
-    for centre in assembly.bolts.positions:
-        offset = points - centre[:, None]
-        rim = np.flatnonzero(np.abs(np.hypot(*offset) - radius) < 1e-6 * radius)
-        x, y = offset[:, rim[np.argsort(np.arctan2(*offset[::-1, rim]))]]
-        area = 0.5 * np.sum(x * np.roll(y, -1) - y * np.roll(x, -1))
-        points[:, rim] += (radius * np.sqrt(np.pi / area) - 1.0) * offset[:, rim]
+def set_mesh_options() -> None:
+    """Set the options of gmsh for a plan of quadrilaterals."""
+    import gmsh
+
+    gmsh.option.setNumber("General.Terminal", 0)
+    for name, value in (
+        ("Algorithm", 8),
+        ("RecombineAll", 1),
+        ("RecombinationAlgorithm", 1),
+        ("SubdivisionAlgorithm", 1),
+        ("Smoothing", 10),
+        ("RandomSeed", 1),
+    ):
+        gmsh.option.setNumber(f"Mesh.{name}", value)
+
+
+def match_circle_areas(points: Array, bolt_positions: Array, radii: Sequence[float] | Array) -> None:
+    """Move the nodes on circles around the bolts outward, in place: each polygon gets the area of its circle.
+
+    points         : (2, n) [m]
+    bolt_positions : (b, 2) [m]
+    radii          : [m] of the circles around each bolt
+    """
+    for centre in bolt_positions:
+        distance = np.hypot(*(points - centre[:, None]))
+        for radius in radii:
+            rim = np.flatnonzero(np.abs(distance - radius) < 1e-6 * radius)
+            offset = points[:, rim] - centre[:, None]
+            x, y = offset[:, np.argsort(np.arctan2(*offset[::-1]))]
+            area = 0.5 * np.sum(x * np.roll(y, -1) - y * np.roll(x, -1))
+            points[:, rim] += (radius * np.sqrt(np.pi / area) - 1.0) * offset
 
 
 def _draw_plan_view(gmsh_model: object, assembly: Assembly) -> None:
@@ -126,15 +143,21 @@ def _draw_plan_view(gmsh_model: object, assembly: Assembly) -> None:
     occ.synchronize()
 
 
-def _set_element_sizes(gmsh_model: object, assembly: Assembly, size_at_holes: float, max_size: float) -> None:
-    """Set the element size in gmsh: smallest at the rims of the holes, growing with the distance to them."""
+def set_element_sizes(
+    gmsh_model: object, assembly: Assembly, refinement: float, growth: float = ELEMENT_SIZE_GROWTH
+) -> None:
+    """Set the element size in gmsh: smallest at the rims of the holes, growing with the distance to them.
+
+    growth : increase of twice the element size over the distance [1]
+    """
+    size_at_holes, max_size = element_sizes(assembly, refinement)
     field = gmsh_model.mesh.field  # type: ignore[attr-defined]
     # the subdivision of gmsh halves the element size, so twice the size is set
     circles = []
     hole = 0.5 * assembly.bolts.hole_diameter
     for x, y in assembly.bolts.positions:
         terms = f"(Sqrt((x-({x:.12g}))^2+(y-({y:.12g}))^2))"
-        size = f"{2 * size_at_holes:.12g}+0.35*Abs({terms}-{hole:.12g})"
+        size = f"{2 * size_at_holes:.12g}+{growth:g}*Abs({terms}-{hole:.12g})"
         rim = field.add("MathEval")
         field.setString(rim, "F", size)
         circles.append(rim)
@@ -149,7 +172,7 @@ def _set_element_sizes(gmsh_model: object, assembly: Assembly, size_at_holes: fl
         gmsh.option.setNumber(f"Mesh.{name}", 0)
 
 
-def _read_quadrilaterals(gmsh_model: object) -> tuple[Array, IndexArray]:
+def read_quadrilaterals(gmsh_model: object) -> tuple[Array, IndexArray]:
     """Read points (2, n) [m] and counter-clockwise cells (4, m) of the mesh from gmsh."""
     mesh = gmsh_model.mesh  # type: ignore[attr-defined]
     tags, coordinates, _ = mesh.getNodes()
@@ -170,14 +193,23 @@ def _read_quadrilaterals(gmsh_model: object) -> tuple[Array, IndexArray]:
     return points, cells if area > 0 else cells[::-1]
 
 
-def extrude_body_mesh(plan_mesh: PlanMesh, assembly: Assembly, side: int, refinement: float = 1.0) -> MeshHex:
+def extrude_body_mesh(
+    plan_mesh: PlanMesh,
+    assembly: Assembly,
+    side: int,
+    refinement: float = 1.0,
+    first_height: float | None = None,
+) -> MeshHex:
     """Extrude the plan mesh to the mesh of one body: side 1 towards -z, side 2 towards +z.
+
+    first_height : [m] of the elements under the bolt heads; None: all elements of a layer are equally high
 
     Named boundaries: `contact` is the whole face at z = 0; head1, head2, ... are the faces under the bolt
     heads or, in a tapped plate, the walls of the threaded holes.
     """
     body = assembly.side1 if side == 1 else assembly.side2
-    heights, owner = extrusion_levels(body, refinement, 2.0 * element_sizes(assembly, refinement)[1])
+    max_height = 2.0 * element_sizes(assembly, refinement)[1]
+    heights, owner = extrusion_levels(body, refinement, max_height, first_height)
     count, layers = plan_mesh.points.shape[1], body.layers()
     lower, upper = [], []
     for k, layer_index in enumerate(owner):
@@ -193,22 +225,36 @@ def extrude_body_mesh(plan_mesh: PlanMesh, assembly: Assembly, side: int, refine
     return mesh.with_boundaries(_find_named_boundaries(mesh, assembly, side))
 
 
+def graded_levels(length: float, first_size: float, growth: float) -> Array:
+    """Division of a length into sizes that grow in geometric progression.
+
+    Returns the levels (k + 1) [m] from 0 to `length`; the first size is near `first_size` [m].
+    """
+    count = max(round(np.log1p((growth - 1.0) * length / first_size) / np.log(growth)), 1)
+    levels = np.cumsum(np.append(0.0, growth ** np.arange(count)))
+    return np.asarray(length * levels / levels[-1])
+
+
 def extrusion_levels(
-    body: BodyGeometry, refinement: float, max_element_height: float
+    body: BodyGeometry, refinement: float, max_element_height: float, first_height: float | None = None
 ) -> tuple[Array, list[int]]:
     """Subdivision of a body along z: k rows of elements between k + 1 levels.
 
     Returns the distances (k + 1) [m] of the levels from the contact, and for each row the index of its layer.
 
     max_element_height : [m] largest height of an element
+    first_height       : [m] height of the elements under the bolt heads, see `extrude_body_mesh`
     """
     heights, owner = [0.0], []
     for layer_index, layer in enumerate(body.layers()):
         thickness = layer.top_distance - layer.bottom_distance
         min_rows = ELEMENTS_THROUGH_THICKNESS if layer_index == 0 else 1
         rows = max(round(min_rows * refinement), int(np.ceil(thickness / max_element_height - 1e-9)), 1)
-        heights += list(layer.bottom_distance + thickness * np.arange(1, rows + 1) / rows)
-        owner += [layer_index] * rows
+        levels = thickness * np.arange(rows + 1) / rows
+        if layer_index == 0 and first_height is not None:
+            levels = thickness - graded_levels(thickness, first_height, LAYER_GROWTH)[::-1]
+        heights += list(layer.bottom_distance + levels[1:])
+        owner += [layer_index] * (len(levels) - 1)
     return np.array(heights), owner
 
 

@@ -20,7 +20,8 @@ from .bolted_contact import compute_bolt_head_loads, make_elastic_body
 from .contact import ContactInterface, displacement_matrix
 from .elasticity import Cholesky, ElasticBody, IndexArray
 from .geometry import Assembly
-from .mesh import contact_mesh, find_contact_cells, mesh_plan_view
+from .mesh import contact_mesh, find_contact_cells
+from .symmetric_plan import first_size_at_heads, mesh_symmetric_plan
 
 COORDINATE_AXES = (0, 1, 2)
 MIRROR_SIGNS = np.array([1.0, 1.0, -1.0])
@@ -92,8 +93,10 @@ class JointFiniteElements:
         attachment : kind of attachment, a key of ATTACHMENT_NODES
         refinement : [1] divides the sizes of all elements
         """
-        plan = mesh_plan_view(assembly, refinement)
-        first, second = (make_elastic_body(plan, assembly, side, refinement) for side in (1, 2))
+        graded_heads = attachment == "heads"
+        plan = mesh_symmetric_plan(assembly, refinement, graded_heads)
+        first_height = first_size_at_heads(assembly, refinement) if graded_heads else None
+        first, second = (make_elastic_body(plan, assembly, side, refinement, first_height) for side in (1, 2))
         attachments, heads = [], []
         for side, body in enumerate((first, second), start=1):
             nodes = np.flatnonzero(ATTACHMENT_NODES[attachment](body, side))

@@ -89,7 +89,7 @@ class Ringing:
 def compute_ringing(
     model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, payload: float, tip_body: int, times: Array
 ) -> list[Ringing]:
-    """Vibration of the arm after the stop of each motor, at a pose under weight with the other motors held.
+    """Vibration of the arm after the stop of each motor, at a pose under weight, the other motors held.
 
     The motor of the axis brakes at a constant rate: its drive carries the rated torque of the drive beyond the
     weight. When the motor stands still, the arm is released from the wind-up of braking. The equations are

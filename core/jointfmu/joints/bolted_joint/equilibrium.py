@@ -10,11 +10,11 @@ S modal stiffness, p contact pressure, t traction, A area, k_b and e stiffness a
 is at least the negative preload of the bolt, see `BoltSprings`.
 
 Newton's method takes the part of H (below) for a as its first Jacobian, and corrects it by Broyden's update.
-It computes J after an iteration that reduces the residual too little, see JACOBIAN_REUSE_RESIDUAL_DECREASE, and after a
-correction that the line search shortens or drops. A load step that does not converge is divided: q is then
-prescribed at step fractions between 0 (start of the load step) and 1 (end). The fractions only lead a to the
-solution: friction always gets one straight increment from the start of the load step to the trial state, so
-its history does not contain them. Shapes: n points, m patches, b bolts, k modes.
+It computes J after an iteration that reduces the residual too little (JACOBIAN_REUSE_RESIDUAL_DECREASE), and
+after a correction that the line search shortens or drops. A load step that does not converge is divided: q is
+then prescribed at step fractions between 0 (start of the load step) and 1 (end). The fractions only lead a to
+the solution: friction always gets one straight increment from the start of the load step to the trial state,
+so its history does not contain them. Shapes: n points, m patches, b bolts, k modes.
 
 Five derivatives of forces occur, in this module and in the C code under the same names:
 
@@ -405,9 +405,10 @@ def search_line(
 
     The energy slope [J] is residual . correction: where friction sticks, the derivative of the potential
     energy along the correction. With slip there is no potential, but the slope still vanishes at the
-    solution. If it exceeds MAX_FINAL_OVER_INITIAL_ENERGY_SLOPE times its first value at the end, the correction is
-    shortened by regula falsi, or dropped if the Jacobian was computed at an earlier state. If the first value
-    is positive, too, regula falsi has no zero: the correction is shortened to MIN_OVER_PREVIOUS_CORRECTION_LENGTH.
+    solution. If it exceeds MAX_FINAL_OVER_INITIAL_ENERGY_SLOPE times its first value at the end, the
+    correction is shortened by regula falsi, or dropped if the Jacobian was computed at an earlier state. If
+    the first value is positive, too, regula falsi has no zero: the correction is shortened to
+    MIN_OVER_PREVIOUS_CORRECTION_LENGTH.
     """
     length, energy_slope_0 = 1.0, float(trial_state.residual @ correction)
     for shortenings in range(MAX_LINE_SEARCH):

@@ -118,14 +118,14 @@ class BoltedPlate:
         plan = np.array([self.length, self.width])
         return np.asarray(np.maximum(np.ceil(COARSE_CELL_COUNT * plan / np.max(plan)), 2.0))
 
-    def pressure_distribution(self) -> PressureDistribution:
-        """Pressure distribution at the centroids of area cells of the plate.
+    def pressure_distribution(self, cells: tuple[Array, Array] | None = None) -> PressureDistribution:
+        """Pressure distribution at the centroids of area cells of the plate (`cells`: see `bolt_pressures`).
 
         A moment M about x changes the force of bolt i by M y_i/sum(y_j^2), y from the centre of the bolts
         (the plates stay plane); for two equal rows this is M/(L_a N_b). Bolts in one row cannot carry a
         moment by their forces: the pressure then changes linearly with the distance from their line.
         """
-        share, position, unit = bolt_pressures(self)
+        share, position, unit = bolt_pressures(self, cells)
         equal, y = unit.mean(axis=0), self.bolts_from_middle[:, 1]
         if has_one_bolt_row(self):
             distance = _one_row_equivalent_distance(self, share, position, unit)
@@ -236,12 +236,16 @@ def pressure_decay(plate: BoltedPlate, distance: Array) -> Array:
     return np.asarray((R - r) ** 3 * (3.0 * r + R - 4.0 * a) / (R - a) ** 4)
 
 
-def bolt_pressures(plate: BoltedPlate) -> tuple[Array, Array, Array]:
+def bolt_pressures(
+    plate: BoltedPlate, cells: tuple[Array, Array] | None = None
+) -> tuple[Array, Array, Array]:
     """Area shares (k) [1] and positions (k, 2) [m] of the area cells, and pressures (n, k) [1] of each bolt.
 
     Positions are relative to the centroid of the contact, pressures to their mean over the whole contact.
+
+    cells : areas (k) [m2] and centroids (k, 2) [m] from the middle of the plate; None: `plate_cells`
     """
-    areas, points = plate_cells(plate)
+    areas, points = cells or plate_cells(plate)
     unit = np.array([_moment_free_pressure(plate, areas, points - bolt) for bolt in plate.bolts_from_middle])
     share = areas / areas.sum()
     return share, points - share @ points, unit * areas.sum()

@@ -95,12 +95,22 @@ def compute_pressure_field(
     return insert_contact_field(parameter_file, solution, bolted_plates.remaining_preload)
 
 
+COARSE_REFINEMENT = 0.5
+"""Refinement of the second mesh, for the estimate of the error of the finite elements [1]."""
+
+
 @dataclass(frozen=True, slots=True)
 class ComputedJoint:
-    """Complete joint between its attachments: compliances, and parameter file with elastic sides."""
+    """Complete joint between its attachments, by finite elements.
+
+    compliances    : of the linear finite-element model
+    parameter_file : parameters of the joint with elastic sides
+    mesh_changes   : {K_xx, ..., K_rz, load factor: relative change [1] from a mesh of twice the element size}
+    """
 
     compliances: Compliances
     parameter_file: ParameterFile
+    mesh_changes: dict[str, float]
 
 
 def compute_joint(
@@ -139,14 +149,18 @@ def compute_joint_of_assembly(
     with require_fem_packages("the complete joint"):
         from ....fem.geometry import check_thickness
         from ....fem.reduction.elastic_bodies import reduce_bodies
-        from ....fem.whole_joint import JointFiniteElements
+        from ....fem.whole_joint import JointFiniteElements, LinearJoint
 
         set_status_text("members by finite elements")
         clamped = make_assembly()
         check_thickness(clamped)
         joint = JointFiniteElements.from_assembly(clamped, attachment)
-        springs = _interface_stiffness(parameter_file, preload, joint, normalised_pressure)
-        linear = joint.linearize(springs, parameter_file.values.bolt_stiffness)
+
+        def linearize(model: JointFiniteElements) -> tuple[LinearJoint, Array]:
+            springs = _interface_stiffness(parameter_file, preload, model, normalised_pressure)
+            return model.linearize(springs, parameter_file.values.bolt_stiffness), springs
+
+        linear, springs = linearize(joint)
         bodies = replace(
             reduce_bodies(linear, BoltedJointSpring.for_joint(parameter_file.values), springs[:, 2], preload),
             thickness=(clamped.side1.clamped_thickness, clamped.side2.clamped_thickness),
@@ -156,7 +170,28 @@ def compute_joint_of_assembly(
             thread_depth=getattr(clamped.side2, "depth", 0.0),
         )
         compliances = linear.compliances()
-    return ComputedJoint(compliances, set_elastic_bodies(parameter_file, bodies, attachment))
+        coarse, _ = linearize(
+            JointFiniteElements.from_assembly(clamped, attachment, refinement=COARSE_REFINEMENT)
+        )
+        changes = _mesh_changes(compliances, coarse.compliances())
+    file = set_elastic_bodies(parameter_file, bodies, attachment)
+    name = "bodies.stiffness"
+    sources = {**file.sources, name: f"{file.sources[name]}; {_describe_mesh_changes(changes)}"}
+    return ComputedJoint(compliances, replace(file, sources=sources), changes)
+
+
+def _mesh_changes(fine: Compliances, coarse: Compliances) -> dict[str, float]:
+    """Relative changes [1] of the stiffnesses and of the load factor from a coarse to a fine mesh."""
+    stiffness = coarse.total_compliance / fine.total_compliance - 1.0
+    changes = {row[0]: float(change) for row, change in zip(fine.table_rows(), stiffness, strict=True)}
+    factor = fine.joint_load_factor
+    return changes | ({"load factor": 1.0 - coarse.joint_load_factor / factor} if factor else {})
+
+
+def _describe_mesh_changes(mesh_changes: dict[str, float]) -> str:
+    """Text about the error of the finite elements, estimated by two meshes."""
+    changes = ", ".join(f"{name} {change:+.1%}" for name, change in mesh_changes.items())
+    return f"change from a mesh with elements of twice the size, an estimate of the error: {changes}"
 
 
 def _contact_outline(assembly: "Assembly", centroid: Array) -> tuple[float, ...]:
@@ -191,23 +226,29 @@ def _interface_stiffness(
 ) -> Array:
     """Stiffness per area (points, 3) [N/m3] along x, y, z of the tightened interface, at integration points.
 
-    Each point takes the stiffness of the nearest node of the pressure distribution. One factor then makes the
-    total equal to the stiffness of the joint.
+    The pressure of a plate is computed at each point. Of another pressure distribution, each point takes the
+    value of the nearest node. One factor then makes the total equal to the stiffness of the joint.
 
     normalised_pressure : as in `compute_joint_of_assembly`
     """
     from scipy.spatial import cKDTree
 
     values, interface = parameter_file.values, joint_model.contact_interface
-    normalised_pressure = normalised_pressure or pressure_distribution(values.pattern)
+    nodes = normalised_pressure or pressure_distribution(values.pattern)
     curve = tabulate_approach(values)
-    nodal = curve.derivatives(curve.inverse(preload_pressure(values, normalised_pressure, preload, 0.0)), 1)[
-        1
-    ]
-    normal = nodal[cKDTree(normalised_pressure.position).query(interface.centred_position)[1]]
-    normal = normal * (
-        values.A_0 * (normalised_pressure.area_share @ nodal) / (interface.quadrature_area @ normal)
-    )
+
+    def stiffness(pressure: PressureDistribution) -> Array:
+        p = preload_pressure(values, pressure, preload, 0.0)
+        return curve.derivatives(curve.inverse(p), 1)[1]
+
+    nodal = stiffness(nodes)
+    if normalised_pressure is None and isinstance(values.pattern, BoltedPlate):
+        normal = stiffness(
+            values.pattern.pressure_distribution((interface.quadrature_area, interface.quadrature_position))
+        )
+    else:
+        normal = nodal[cKDTree(nodes.position).query(interface.centred_position)[1]]
+    normal = normal * (values.A_0 * (nodes.area_share @ nodal) / (interface.quadrature_area @ normal))
     ratio = float(values.shear_stiffness_ratio())
     return np.stack([ratio * normal, ratio * normal, normal], axis=1)
 
@@ -233,7 +274,10 @@ def compute_joint_or_warning(
         computed = compute_joint(parameter_file, bolted_plates, attachment, normalised_pressure)
     except ValueError as error:
         raise ValueError(f"{error}; or state --sides rigid for the interface alone") from None
-    return NewJoint(computed.parameter_file, joint_facts(computed.parameter_file, bolted_plates.preload))
+    changes = computed.mesh_changes
+    error = max(map(abs, changes.values())), "1", _describe_mesh_changes(changes)
+    facts = joint_facts(computed.parameter_file, bolted_plates.preload)
+    return NewJoint(computed.parameter_file, facts | {"mesh_error": error})
 
 
 def joint_facts(parameter_file: ParameterFile, preload: float) -> JointFacts:

@@ -1,0 +1,224 @@
+"""Plan mesh with the symmetry of the assembly, and with rings of elements around the bolts.
+
+The mesh has the mirror symmetries of bodies and bolts: about x, about y, about the diagonal. gmsh meshes one
+sector of the plan, without the rings around the bolts. The rings are polar. Mirror images of the sector make
+the whole plan.
+
+A rigid face under a bolt head has singular stresses at its edges. If the faces under the heads are rigid,
+rings and layers are therefore graded towards these edges.
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from jointfmu.quantity import Array
+
+from .elasticity import IndexArray
+from .geometry import LENGTH_TOLERANCE, Assembly, layer_rectangles
+from .mesh import (
+    ELEMENT_SIZE_GROWTH,
+    PlanMesh,
+    graded_levels,
+    match_circle_areas,
+    read_quadrilaterals,
+    set_element_sizes,
+    set_mesh_options,
+)
+
+ELEMENTS_AROUND_BOLT = 12
+"""Number of elements around a bolt at refinements up to 1; 16 if axes of symmetry cross in the bolt."""
+FIRST_SIZE_AT_HEADS = 0.2
+"""Size of the elements at the edges of a rigid head over the width of its bearing ring [1]; refinement 1."""
+RING_GROWTH = 1.5
+"""Ratio of the widths of two successive rings between hole and edge of the head [1]."""
+OUTER_RING_GROWTH = 2.0
+"""Ratio of the widths of two successive rings outside of the head [1]."""
+OUTER_RINGS_WIDTH = 1.4
+"""Width of the rings outside of the head over the width of its bearing ring [1]."""
+MAX_CLEARANCE_SHARE = 0.5
+"""Largest width of the rings outside of the head over the clearance to the next edge or head [1]."""
+SIZE_GROWTH_AROUND_RINGS = 0.8
+"""Growth of the elements outside of graded rings, see `set_element_sizes` [1]."""
+MERGE_DISTANCE = 1e-9
+"""Distance [m] below which two nodes are one."""
+
+
+@dataclass(frozen=True, slots=True)
+class PlanSymmetry:
+    """Mirror symmetries of the plan: in x (x to -x), in y, and in the diagonal (x and y exchanged)."""
+
+    x: bool
+    y: bool
+    diagonal: bool
+
+    @classmethod
+    def of(cls, assembly: Assembly) -> "PlanSymmetry":
+        """Find the symmetries of an assembly. The diagonal counts only beside both others."""
+        bolts = assembly.bolts.positions
+
+        def maps_bolts(images: Array) -> bool:
+            return bool(np.max(cKDTree(bolts).query(images)[0]) < LENGTH_TOLERANCE)
+
+        x, y = (maps_bolts(bolts * sign) for sign in ([-1.0, 1.0], [1.0, -1.0]))
+        squares = all(abs(a - b) < LENGTH_TOLERANCE for a, b in layer_rectangles(assembly))
+        return cls(x, y, x and y and squares and maps_bolts(bolts[:, ::-1]))
+
+
+def mesh_symmetric_plan(assembly: Assembly, refinement: float, graded_heads: bool) -> PlanMesh:
+    """Mesh the plan view with the symmetry of the assembly.
+
+    refinement   : [1] divides all element sizes
+    graded_heads : grade the elements towards the edges of the bolt heads
+
+    Raises ValueError if an edge of a body runs under a bolt head.
+    """
+    radii = _ring_radii(assembly, refinement, graded_heads)
+    symmetry = PlanSymmetry.of(assembly)
+    growth = SIZE_GROWTH_AROUND_RINGS if graded_heads else ELEMENT_SIZE_GROWTH
+    corners = _mesh_sector(assembly, symmetry, refinement, radii[-1], growth)
+    rings = _make_rings(corners, assembly.bolts.positions, radii)
+    quadrilaterals = np.concatenate([corners, rings], axis=2)
+    for mirrored, matrix in (
+        (symmetry.diagonal, [[0, 1], [1, 0]]),
+        (symmetry.x, [[-1, 0], [0, 1]]),
+        (symmetry.y, [[1, 0], [0, -1]]),
+    ):
+        if mirrored:
+            image = np.einsum("ij,jkm->ikm", np.array(matrix, dtype=np.float64), quadrilaterals[:, ::-1])
+            quadrilaterals = np.concatenate([quadrilaterals, image], axis=2)
+    points, cells = _merge_nodes(quadrilaterals)
+    match_circle_areas(points, assembly.bolts.positions, radii)
+    offset = points[:, cells].mean(axis=1)[:, None, :] - assembly.bolts.positions.T[:, :, None]
+    return PlanMesh(points, cells, np.hypot(*offset).min(axis=0) < radii[0])
+
+
+def first_size_at_heads(assembly: Assembly, refinement: float) -> float:
+    """Size [m] of the elements at the edges of the bolt heads, if the mesh is graded towards them."""
+    ring_width = 0.5 * (assembly.bolts.head_diameter - assembly.bolts.hole_diameter)
+    return FIRST_SIZE_AT_HEADS * ring_width / refinement
+
+
+def _ring_radii(assembly: Assembly, refinement: float, graded_heads: bool) -> Array:
+    """Radii [m] of the circles around each bolt, from the hole outward."""
+    hole, head = 0.5 * assembly.bolts.hole_diameter, 0.5 * assembly.bolts.head_diameter
+    clearance = _clearance(assembly, head)
+    if not graded_heads:
+        return np.array([hole, head])
+    first = first_size_at_heads(assembly, refinement)
+    half = graded_levels(0.5 * (head - hole), first, RING_GROWTH)
+    inside = np.concatenate([hole + half, head - half[-2::-1]])
+    width = min(OUTER_RINGS_WIDTH * (head - hole), MAX_CLEARANCE_SHARE * clearance)
+    outside = graded_levels(width, first, OUTER_RING_GROWTH)[1:] if width > 0.5 * first else np.zeros(0)
+    return np.concatenate([inside, head + outside])
+
+
+def _clearance(assembly: Assembly, head_radius: float) -> float:
+    """Smallest distance [m] from the edge of a bolt head to an edge of a body, or to another head.
+
+    Raises ValueError if an edge of a body runs under a head.
+    """
+    bolts = assembly.bolts.positions
+    distances = [np.inf]
+    for half in layer_rectangles(assembly):
+        outside = np.maximum(np.abs(bolts) - half, 0.0)
+        inside = np.min(half - np.abs(bolts), axis=1)
+        to_edge = np.where(inside > 0.0, inside, np.hypot(*outside.T))
+        distances.append(float(to_edge.min()))
+    if min(distances) < head_radius - LENGTH_TOLERANCE:
+        raise ValueError(
+            f"an edge of a body is {1e3 * min(distances):.4g} mm from the axis of a bolt, expected at least "
+            f"{1e3 * head_radius:.4g} mm: the radius of the head"
+        )
+    if len(bolts) > 1:
+        distances.append(0.5 * float(cKDTree(bolts).query(bolts, k=2)[0][:, 1].min()))
+    return max(min(distances) - head_radius, 0.0)
+
+
+def _mesh_sector(
+    assembly: Assembly, symmetry: PlanSymmetry, refinement: float, ring_radius: float, growth: float
+) -> Array:
+    """Quadrilaterals (2, 4, m) [m] of one sector of the plan, without the rings between hole and ring_radius.
+
+    growth : see `set_element_sizes`
+    """
+    import gmsh
+
+    gmsh.initialize(interruptible=False)
+    try:
+        set_mesh_options()
+        occ = gmsh.model.occ
+        faces = [(2, occ.addRectangle(-x, -y, 0.0, 2 * x, 2 * y)) for x, y in layer_rectangles(assembly)]
+        if len(faces) > 1:
+            faces, _ = occ.fragment(faces[:1], faces[1:])
+        hole, bolts = 0.5 * assembly.bolts.hole_diameter, assembly.bolts.positions
+        discs = [(2, occ.addDisk(x, y, 0.0, ring_radius, ring_radius)) for x, y in bolts]
+        faces, _ = occ.cut(faces, discs)
+        holes = [(2, occ.addDisk(x, y, 0.0, hole, hole)) for x, y in bolts]
+        pieces, _ = occ.intersect([*faces, *holes], [(2, _add_sector(occ, assembly, symmetry))])
+        occ.fragment(pieces, [])
+        occ.synchronize()
+        _divide_circles(gmsh.model, bolts, (hole, ring_radius), refinement)
+        set_element_sizes(gmsh.model, assembly, refinement, growth)
+        gmsh.model.mesh.generate(2)
+        points, cells = read_quadrilaterals(gmsh.model)
+    finally:
+        gmsh.finalize()
+    return points[:, cells]
+
+
+def _add_sector(occ: object, assembly: Assembly, symmetry: PlanSymmetry) -> int:
+    """Add the face of one sector of the plan to gmsh; return its tag."""
+    x, y = 2.0 * np.max(list(layer_rectangles(assembly)), axis=0)
+    low_x, low_y = 0.0 if symmetry.x else -x, 0.0 if symmetry.y else -y
+    if not symmetry.diagonal:
+        return int(occ.addRectangle(low_x, low_y, 0.0, x - low_x, y - low_y))  # type: ignore[attr-defined]
+    corners = [occ.addPoint(*p, 0.0) for p in ((0.0, 0.0), (x, 0.0), (x, x))]  # type: ignore[attr-defined]
+    lines = [occ.addLine(corners[i], corners[(i + 1) % 3]) for i in range(3)]  # type: ignore[attr-defined]
+    return int(occ.addPlaneSurface([occ.addCurveLoop(lines)]))  # type: ignore[attr-defined]
+
+
+def _divide_circles(gmsh_model: object, bolts: Array, radii: tuple[float, float], refinement: float) -> None:
+    """Divide the arcs around the bolts into equal edges, as many on the hole as on the outer circle."""
+    for _, curve in gmsh_model.getEntities(1):  # type: ignore[attr-defined]
+        if gmsh_model.getType(1, curve) == "Line":  # type: ignore[attr-defined]
+            continue
+        length = gmsh_model.occ.getMass(1, curve)  # type: ignore[attr-defined]
+        low, high = gmsh_model.getParametrizationBounds(1, curve)  # type: ignore[attr-defined]
+        point = np.array(gmsh_model.getValue(1, curve, [0.5 * (low[0] + high[0])])[:2])  # type: ignore[attr-defined]
+        distance = np.min(np.hypot(*(bolts - point).T))
+        radius = radii[int(np.argmin(np.abs(np.array(radii) - distance)))]
+        share = length / (2.0 * np.pi * radius)
+        # the subdivision of gmsh halves each edge
+        count = int(np.ceil(0.5 * ELEMENTS_AROUND_BOLT * max(refinement, 1.0) * share - 1e-6))
+        gmsh_model.mesh.setTransfiniteCurve(curve, count + 1)  # type: ignore[attr-defined]
+
+
+def _make_rings(quadrilaterals: Array, bolts: Array, radii: Array) -> Array:
+    """Quadrilaterals (2, 4, m) [m] between successive circles, on the edges at the largest circle."""
+    rings = []
+    ends = np.stack([quadrilaterals, np.roll(quadrilaterals, -1, axis=1)], axis=-1).reshape(2, -1, 2)
+    for bolt in bolts:
+        offset = ends - bolt[:, None, None]
+        on_circle = np.all(np.abs(np.hypot(*offset) - radii[-1]) < 1e-6 * radii[-1], axis=1)
+        # the body is on the left of its edges, so these run clockwise around the bolt
+        second, first = np.moveaxis(offset[:, on_circle] / radii[-1], 2, 0)
+        for low, high in pairwise(radii):
+            corners = np.stack([low * first, high * first, high * second, low * second], axis=1)
+            rings.append(corners + bolt[:, None, None])
+    return np.concatenate(rings, axis=2)
+
+
+def _merge_nodes(quadrilaterals: Array) -> tuple[Array, IndexArray]:
+    """Points (2, n) [m] and cells (4, m) of quadrilaterals (2, 4, m) [m] that share nodes."""
+    count = quadrilaterals.shape[2]
+    points = quadrilaterals.reshape(2, -1)
+    pairs = cKDTree(points.T).query_pairs(MERGE_DISTANCE, output_type="ndarray")
+    graph = coo_matrix((np.ones(len(pairs)), pairs.T), shape=(points.shape[1],) * 2)
+    label = connected_components(graph, directed=False)[1]
+    _, first = np.unique(label, return_index=True)
+    return points[:, first], label.reshape(4, count).astype(np.int64)
