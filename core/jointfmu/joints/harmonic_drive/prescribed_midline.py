@@ -166,7 +166,7 @@ class CatalogueDriveParameters(PrescribedDriveParameters):
     @property
     def _min_first_stiffness(self) -> Number:
         """Stiffness K1 [N.m/rad] below which corners of the default half-width, or smaller ones, overlap."""
-        corner = np.minimum(self.corner, DEFAULT_CORNER_HALF_WIDTH_RATIO)
+        corner = np.minimum(self.corner, DEFAULT_CORNER_HALF_WIDTH_OVER_WIND_UP)
         torque_ratio = self.T1 / np.maximum(self.T2 - self.T1, self.T1)
         return 2.0 * corner / (1.0 - corner) * self.K2 * torque_ratio
 
