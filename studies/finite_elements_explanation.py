@@ -29,7 +29,7 @@ from common import run_study
 from jointfmu_tools.common import plots
 from jointfmu_tools.fem import convergence
 from jointfmu_tools.fem.assembly import read_assembly
-from jointfmu_tools.fem.bolted_contact import SECOND_FIELD_MOMENT_RATIO, BoltedContact, JointSolution
+from jointfmu_tools.fem.bolted_contact import SECOND_FIELD_OVER_UNLOADING_MOMENT, BoltedContact, JointSolution
 from jointfmu_tools.fem.geometry import Assembly, BoxSection
 from jointfmu_tools.studies.published.reference import ROLES, read_points
 from numpy.typing import NDArray
@@ -81,7 +81,7 @@ def print_meshes(assembly: Assembly) -> None:
         print(f"{memory:.2f} GB, {steps} steps of Newton's method", flush=True)
         start = time.process_time()
         steps = solution.solve_load_case(
-            PRELOAD, SECOND_FIELD_MOMENT_RATIO * one.max_moment(PRELOAD)
+            PRELOAD, SECOND_FIELD_OVER_UNLOADING_MOMENT * one.max_moment(PRELOAD)
         ).contact_solution.newton_steps
         print(f"with a moment, from there: {time.process_time() - start:.1f} s, {steps} steps", flush=True)
     rows, _ = convergence.run_mesh_study(

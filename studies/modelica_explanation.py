@@ -80,7 +80,18 @@ class Drive:
             else np.clip(states, -found.friction_limit, found.friction_limit)
         )
         load = math.copysign(float(self.law.curve.derivatives(np.array(abs(phi)), 0)[0]), phi)
-        tau = transmitted_torque(joint, x[:4], Spring(phi, load, 0.0, held.sum(), 0.0, slope))
+        tau = transmitted_torque(
+            joint,
+            x[:4],
+            Spring(
+                phi_rel=phi,
+                midline_torque=load,
+                midline_stiffness=0.0,
+                hysteresis_torque=held.sum(),
+                phi_error=0.0,
+                phi_error_slope=slope,
+            ),
+        )
         positive, negative = friction_limits(joint, x[1], tau)
         q = x[4 : 4 + self.brakes]
         share = SLIDER_LIMIT_SHARES[: self.brakes]

@@ -303,7 +303,8 @@ def test_pymoca_reads_every_file_and_flattens_every_model():
             flat = tree.flatten(root, ast.ComponentRef.from_string(full)).classes[full]
             assert flat.equations, full
             if f"{folder}.{name}" in expected:
-                assert (len(flat.symbols), len(flat.equations)) == expected[f"{folder}.{name}"]
+                counts = len(flat.symbols), len(flat.equations)
+                assert counts == expected[f"{folder}.{name}"], f"{full}: symbols and equations"
 
 
 # ---- rumoca: flattens and simulates ----

@@ -21,12 +21,15 @@ from jointfmu.quantity import build_parameter_set, flatten_fields
 from .geometry import Assembly, BoltGrid, BoltList, BoxSection, Plate
 
 BODY_TYPES: dict[str, type[object]] = {"plate": Plate, "box": BoxSection}
+"""{value of `body` in an assembly file: class of the body}."""
 BOLT_LAYOUTS: dict[str, type[object]] = {"grid": BoltGrid, "list": BoltList}
+"""{value of `layout` in an assembly file: class of the bolt positions}."""
 ASSEMBLY_SECTIONS = {
     "side1": ("body", BODY_TYPES),
     "side2": ("body", BODY_TYPES),
     "bolts": ("layout", BOLT_LAYOUTS),
 }
+"""Sections of an assembly file."""
 
 
 def read_assembly(path: str | Path) -> Assembly:

@@ -145,7 +145,10 @@ def rigid_motions(body: ElasticBody) -> Array:
 
 
 def _has_independent_columns(rigid_motion_approach: Array) -> bool:
-    """Whether every combination of motions (columns) changes the approach of some points (rows)."""
+    """Whether every rigid-body motion, and every combination of motions (columns), changes the approach.
+
+    The rows are quadrature points of the contact.
+    """
     if rigid_motion_approach.shape[1] == 0:
         return True
     if rigid_motion_approach.shape[0] < rigid_motion_approach.shape[1]:

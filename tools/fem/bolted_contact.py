@@ -60,7 +60,7 @@ class BoltedContact:
         moment: float,
         initial_solution: ContactSolution | None = None,
     ) -> "JointSolution":
-        """Solve for the equilibrium under a preload [N] per bolt and a moment [N.m] about x.
+        """Solve a contact model for the equilibrium under a preload [N] per bolt and a moment [N.m] about x.
 
         initial_solution : equilibrium from which Newton's method starts; None: start at uniform pressure
         """
@@ -163,7 +163,7 @@ def bolt_midpoints(bolt_positions: Array) -> Array:
     return np.array(midpoints).reshape(-1, 2)
 
 
-SECOND_FIELD_MOMENT_RATIO = 1.0 / 3.0
+SECOND_FIELD_OVER_UNLOADING_MOMENT = 1.0 / 3.0
 """Moment of the second pressure field over the moment that unloads a row of bolts [1], as in Zhao 2018."""
 
 
@@ -183,7 +183,7 @@ def insert_contact_field(
     )
 
     joint = solution.bolted_contact
-    tilting = moment or SECOND_FIELD_MOMENT_RATIO * joint.assembly.max_moment(preload)
+    tilting = moment or SECOND_FIELD_OVER_UNLOADING_MOMENT * joint.assembly.max_moment(preload)
     equal = solution.solve_load_case(preload).contact_field if moment else solution.contact_field
     tilted = (
         solution.contact_field

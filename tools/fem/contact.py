@@ -122,7 +122,7 @@ class ContactModel:
         return np.zeros(np.shape(x)) if self.initial_gap is None else self.initial_gap(x, y)
 
     def supported_unknowns(self) -> tuple[IndexArray, ...]:
-        """Unknowns of each body that stay zero."""
+        """Unknowns of each body (displacements of its nodes) that stay zero."""
         if self.fixed_unknowns is not None:
             return self.fixed_unknowns
         return tuple(
@@ -132,7 +132,7 @@ class ContactModel:
 
     @cached_property
     def _free_unknowns(self) -> tuple[IndexArray, ...]:
-        """Unknowns of each body that are not fixed."""
+        """Unknowns of each body (displacements of its nodes) that are not fixed."""
         pairs = zip(self.bodies, self.supported_unknowns(), strict=True)
         return tuple(np.setdiff1d(np.arange(body.unknown_count), fixed) for body, fixed in pairs)
 
@@ -234,7 +234,7 @@ class ContactSolution:
 
     @property
     def newton_steps(self) -> int:
-        """Number of steps of Newton's method."""
+        """Number of steps that Newton's method took."""
         return self.energy_minimum.newton_steps
 
     @property

@@ -25,11 +25,11 @@ class Cholesky:
     RuntimeError : the matrix is not positive definite
     """
 
-    def __init__(self, matrix: sp.spmatrix) -> None:
+    def __init__(self, positive_definite_matrix: sp.spmatrix) -> None:
         from cvxopt import cholmod
 
         cholmod.options["supernodal"] = 2
-        packed = _to_cvxopt(sp.tril(matrix))
+        packed = _to_cvxopt(sp.tril(positive_definite_matrix))
         self._factor = cholmod.symbolic(packed)
         try:
             cholmod.numeric(packed, self._factor)
@@ -39,7 +39,7 @@ class Cholesky:
             ) from None
 
     def solve(self, right_side: Array | sp.spmatrix) -> Array:
-        """Solve `matrix @ x = right_side` for x (n) or (n, k).
+        """Solve `matrix @ x = right_side` for x (n) or (n, k), with the factor of the matrix.
 
         Sparse right-hand sides take half the time of dense ones: CVXOPT solves four sparse columns at once,
         but dense columns one by one.
@@ -64,17 +64,18 @@ MAX_SPARSE_RIGHT_SIDES = 32
 """Largest number of sparse right-hand sides in one call: their solutions are in memory twice."""
 
 
-def _to_cvxopt(matrix: sp.spmatrix) -> Any:
-    """Convert a sparse matrix (n, k) from scipy to CVXOPT."""
+def _to_cvxopt(sparse_matrix: sp.spmatrix) -> Any:
+    """Convert a sparse matrix (n, k) of scipy to one of CVXOPT."""
     from cvxopt import matrix as dense
     from cvxopt import spmatrix
 
-    entries = matrix.tocoo()
+    entries = sparse_matrix.tocoo()
     rows, columns = (dense(indices.astype(np.int64)) for indices in (entries.row, entries.col))
     return spmatrix(dense(entries.data), rows, columns, entries.shape)
 
 
 IndexArray = NDArray[np.int64]
+"""Array of indices."""
 
 QUADRATURE_DEGREE = 4
 """Polynomial degree that the quadrature integrates exactly: 3 x 3 x 3 points in an element."""

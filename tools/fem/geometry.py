@@ -22,7 +22,7 @@ from jointfmu.quantity import (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoltGrid:
-    """Bolts in rows along x, centred on the z axis."""
+    """Bolts of an assembly in rows along x, centred on the z axis."""
 
     rows: float = quantity_field("1", "rows of bolts", ge=1.0, is_integer=True)
     columns: float = quantity_field("1", "bolts in a row", ge=1.0, is_integer=True)
@@ -54,7 +54,7 @@ class BoltGrid:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoltList:
-    """Bolts at listed positions."""
+    """Bolts at listed positions (x, y), with the diameters of hole and head."""
 
     x: tuple[float, ...] = series_field("m", "positions along x")
     y: tuple[float, ...] = series_field("m", "positions along y")
@@ -73,10 +73,11 @@ class BoltList:
 
 
 BoltArrangement = BoltGrid | BoltList
+"""Positions of bolts: a grid or a list."""
 
 
 def _equidistant_coordinates(count: int) -> Array:
-    """`count` equidistant coordinates from -1 to 1; if `count` is 1, the coordinate 0."""
+    """Equidistant coordinates from -1 to 1, as many as `count`; for one, the coordinate 0."""
     return np.linspace(-1.0, 1.0, count) if count > 1 else np.zeros(1)
 
 
@@ -122,11 +123,11 @@ class Plate(CheckedParameters):
 
     @property
     def clamped_thickness(self) -> float:
-        """Thickness [m] under the head of a bolt."""
+        """Thickness [m] of the plate under the head of a bolt."""
         return self.thickness
 
     def layers(self) -> tuple[Layer, ...]:
-        """Layers of the body, from the contact outward."""
+        """Layers of the plate, from the contact outward."""
         return (Layer(0.0, self.thickness, (0.5 * self.length, 0.5 * self.width), has_bolt_holes=True),)
 
 
@@ -144,7 +145,7 @@ class TappedPlate(Plate):
             )
 
     def layers(self) -> tuple[Layer, ...]:
-        """Layers of the body, from the contact outward."""
+        """Layers of the tapped plate, from the contact outward."""
         half = (0.5 * self.length, 0.5 * self.width)
         return Layer(0.0, self.depth, half, has_bolt_holes=True), Layer(self.depth, self.thickness, half)
 
@@ -183,11 +184,11 @@ class BoxSection:
 
     @property
     def clamped_thickness(self) -> float:
-        """Thickness [m] under the head of a bolt."""
+        """Thickness [m] of the flange under the head of a bolt."""
         return self.flange_thickness
 
     def layers(self) -> tuple[Layer, ...]:
-        """Layers of the body, from the contact outward."""
+        """Layers of the box, from the contact outward."""
         opening = self._half_lengths(self.flange_width)
         outside, inside = self._half_lengths(self.wall_inset), self._half_lengths(self.wall_inset + self.wall)
         base, end = self.flange_thickness, self.height - self.floor
@@ -201,6 +202,7 @@ class BoxSection:
 
 
 BodyGeometry = Plate | TappedPlate | BoxSection
+"""Geometry of one body of an assembly."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,8 +19,8 @@ from .geometry import Assembly, BodyGeometry, Layer, TappedPlate, layer_rectangl
 RELATIVE_ELEMENT_SIZE_AT_HOLES = 1.0 / 10.0
 """Edge length of an element at a hole over the circumference of the hole [1], at refinement 1."""
 ELEMENTS_ACROSS_NARROWEST_STRIP = 4
-"""Number of elements across the narrowest strip of the contact, at refinement 1."""
-HOLE_WALL_DIAMETER_RATIO = 1.02
+"""Number of elements across the narrowest strip of the contact [1], at refinement 1."""
+HOLE_WALL_OVER_HOLE_DIAMETER = 1.02
 """Diameter within which a facet counts as wall of a hole, over the diameter of the hole [1]."""
 ELEMENT_SIZE_GROWTH = 0.35
 """Increase of twice the element size over the distance from the hole [1]."""
@@ -44,7 +44,7 @@ class PlanMesh:
     in_bolt_hole: NDArray[np.bool_]
 
     def is_solid(self, layer: Layer) -> NDArray[np.bool_]:
-        """Whether each cell (m) lies in the material of a layer."""
+        """Whether each cell (m) of the plan mesh lies in the material of a layer."""
         x, y = self.points[:, self.cells].mean(axis=1)
         return layer.is_solid(x, y) & ~(self.in_bolt_hole & layer.has_bolt_holes)
 
@@ -275,7 +275,7 @@ def _find_named_boundaries(mesh: MeshHex, assembly: Assembly, side: int) -> dict
     boundaries = {"contact": np.flatnonzero(outer & (np.abs(z) < tolerance))}
     if isinstance(body, TappedPlate):
         candidates = outer & (np.ptp(mesh.p[2, mesh.facets], axis=0) > tolerance)
-        diameter = HOLE_WALL_DIAMETER_RATIO * bolts.hole_diameter
+        diameter = HOLE_WALL_OVER_HOLE_DIAMETER * bolts.hole_diameter
     else:
         candidates = outer & (np.abs(mesh.p[2, mesh.facets] - head_level).max(axis=0) < tolerance)
         diameter = bolts.head_diameter

@@ -20,7 +20,7 @@ from .elasticity import Cholesky, ElasticBody
 from .geometry import Assembly
 
 RIGID_MODE_COUNT = 6
-"""Number of rigid-body modes of a free assembly."""
+"""Number of rigid-body modes of a free assembly [1]."""
 SHIFT_FREQUENCY = 100.0
 """Frequency f [Hz] of the shift -(2 pi f)^2 of the eigensolver; far below the elastic modes."""
 EIGENSOLVER_TOLERANCE = 1e-8

@@ -16,6 +16,7 @@ from .elasticity import Cholesky
 RELATIVE_TOLERANCE = 1e-11
 """Residual force over applied load [1], both as sums of magnitudes, at which Newton's method converges."""
 MAX_NEWTON_STEPS = 60
+"""Largest number of steps of Newton's method [1]."""
 LINEAR_TOLERANCE_RATIO = 0.1
 """Tightest tolerance of the linear solver over the tolerance of Newton's method [1]."""
 MAX_CG_ITERATIONS = 12
@@ -148,6 +149,7 @@ def _solve_cg(
     count = 0
 
     def count_iteration(_: Array) -> None:
+        """Count one iteration."""
         nonlocal count
         count += 1
 

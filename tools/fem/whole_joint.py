@@ -24,27 +24,28 @@ from .mesh import contact_mesh, find_contact_cells
 from .symmetric_plan import first_size_at_heads, mesh_symmetric_plan
 
 COORDINATE_AXES = (0, 1, 2)
+"""Indices of the axes x, y, z."""
 MIRROR_SIGNS = np.array([1.0, 1.0, -1.0])
 """Factors of x, y, z for the mirror image in the contact plane."""
-ROUND_OFF_RATIO = 1e-14
+ROUND_OFF_OVER_LARGEST_LOAD = 1e-14
 """Part of a load over the largest load [1] below which the part is round-off."""
 FACE_TOLERANCE = 1e-6
 """Distance of a node from a face over the size of the body [1], below which the node lies on the face."""
 
 
 def _is_on_outer_face(body: ElasticBody, side: int) -> NDArray[np.bool_]:
-    """Whether each node lies on the outer face, opposite to the contact."""
+    """Whether each node of a body lies on its outer face, opposite to the contact."""
     return _is_close(np.abs(body.nodes[2]), float(np.abs(body.nodes[2]).max()))
 
 
 def _is_on_end_face(body: ElasticBody, side: int) -> NDArray[np.bool_]:
-    """Whether each node lies on the end face of the body: at +x for side 2, at -x for side 1."""
+    """Whether each node of a body lies on its end face: at +x for side 2, at -x for side 1."""
     x = body.nodes[0] if side == 2 else -body.nodes[0]
     return _is_close(x, float(x.max()))
 
 
 def _is_under_head(body: ElasticBody, side: int) -> NDArray[np.bool_]:
-    """Whether each node lies under a bolt head."""
+    """Whether each node of a body lies under a bolt head."""
     under_head = np.zeros(body.nodes.shape[1], dtype=bool)
     for name, facets in body.mesh.boundaries.items():
         if name.startswith("head"):
@@ -120,7 +121,7 @@ class JointFiniteElements:
 
     @cached_property
     def stiffness_matrices(self) -> tuple[sp.csr_matrix, sp.csr_matrix]:
-        """Stiffness matrix (n, n) [N/m] of each unsupported body."""
+        """Stiffness matrix (n, n) [N/m] of each body without its supports."""
         first, second = self.bodies
         if not self.is_mirrored:
             return first.stiffness, second.stiffness
@@ -215,7 +216,7 @@ class JointFiniteElements:
 
 
 def _block_diagonal(first_matrix: sp.csr_matrix, second_matrix: sp.csr_matrix) -> sp.csr_matrix:
-    """Block diagonal matrix of two square matrices."""
+    """Block diagonal matrix of two square stiffness matrices."""
     size = first_matrix.shape[0]
     indices = np.concatenate([first_matrix.indices, second_matrix.indices + size])
     starts = np.concatenate([first_matrix.indptr, second_matrix.indptr[1:] + first_matrix.nnz])
@@ -244,10 +245,10 @@ class MirrorFactorisation:
         )
 
     def solve(self, right_side: Array) -> Array:
-        """Solve `matrix @ x = right_side` for x (2 n, k)."""
+        """Solve `matrix @ x = right_side` for x (2 n, k), with the matrix of both bodies."""
         first, second = np.split(right_side, 2)
         first = self._mirror[:, None] * first
-        smallest = ROUND_OFF_RATIO * np.max(np.abs(right_side), axis=0)
+        smallest = ROUND_OFF_OVER_LARGEST_LOAD * np.max(np.abs(right_side), axis=0)
         symmetric = _solve_columns(self._symmetric, 0.5 * (second + first), smallest)
         antisymmetric = _solve_columns(self._antisymmetric, 0.5 * (second - first), smallest)
         return np.concatenate(

@@ -18,7 +18,9 @@ import numpy as np
 from jointfmu.quantity import Array, CheckedParameters, Number, quantity_field
 
 Vector = list[Number]
+"""Spatial vector or vector: list of Numbers."""
 Matrix = list[Vector]
+"""Matrix: list of rows."""
 GROUND = -1
 """Index of the parent of a link that is connected to the ground."""
 
@@ -65,7 +67,7 @@ class Link:
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """Frame fixed to a link: axes (columns of `rotation`) and origin [m] in the frame of the link."""
+    """Frame fixed to a link: axes (columns of `rotation`) and origin [m], both in the frame of the link."""
 
     link: int
     rotation: Array
@@ -89,7 +91,7 @@ class Body:
 
 @dataclass(frozen=True, kw_only=True)
 class Payload(CheckedParameters):
-    """Rigid body at the tip, in the frame of the tip body."""
+    """Payload of a robot: rigid body at the tip, in the frame of the tip body."""
 
     m: float = quantity_field("kg", "mass of the payload", ge=0.0)
     x: float = quantity_field("m", "centre of mass of the payload along x of the tip body")
@@ -130,7 +132,7 @@ class RotorMotion:
 
 @dataclass(frozen=True, slots=True)
 class TreeMotion:
-    """Results of the forward dynamics.
+    """Results of the forward dynamics: accelerations and forces of all joints and rotors.
 
     accelerations       : [rad/s2 or m/s2] of the joints
     forces              : [N.m or N] on the joints: as given, or as the prescribed accelerations need them
@@ -324,7 +326,7 @@ def _spatial_inertia(mass: Number, centre: Sequence[Number], inertia: Sequence[S
 
 
 def _payload_inertia(payload: Body) -> Matrix:
-    """Spatial inertia of a payload about the origin of the link that carries it."""
+    """Spatial inertia (6, 6) of a payload about the origin of the link that carries it."""
     axes = payload.frame.rotation.tolist()
     centre = _add(payload.frame.origin.tolist(), _multiply(axes, list(payload.centre)))
     diagonal = [[x if r == c else 0.0 for c, x in enumerate(payload.inertia)] for r in range(3)]
@@ -333,19 +335,22 @@ def _payload_inertia(payload: Body) -> Matrix:
 
 
 def _frame_transform(link: Link) -> Matrix:
-    """Constant transform of motion vectors from the parent's frame to that of the link at position zero."""
+    """Constant transform (6, 6) of motion vectors from the parent's frame to the link's at position zero."""
     return _motion_transform(link.rotation.T.tolist(), link.origin.tolist())
 
 
 def _joint_transform(link: Link, position: Number) -> Matrix:
-    """Transform of motion vectors by the motion of the joint."""
+    """Transform (6, 6) of motion vectors by the motion of a joint from position zero."""
     if link.is_slide:
         return _motion_transform(np.eye(3).tolist(), [0.0, 0.0, position])
     return _motion_transform(_z_rotation(position), [0.0, 0.0, 0.0])
 
 
 def _motion_transform(rotation: Matrix, origin: Vector) -> Matrix:
-    """Transform of motion vectors to a frame; `rotation` maps components, `origin` is in the old frame."""
+    """Transform (6, 6) of motion vectors to another frame.
+
+    rotation : (3, 3) maps components to the new frame; origin : (3) [m] of the new frame, in the old one
+    """
     lower = _product(rotation, _skew(origin))
     return [
         *([*row, 0.0, 0.0, 0.0] for row in rotation),
@@ -360,7 +365,7 @@ def _z_rotation(angle: Number) -> Matrix:
 
 
 def _unit_vector(index: int, size: Number) -> Vector:
-    """Spatial vector along one coordinate."""
+    """Unit vector along one coordinate of a number of coordinates."""
     return [size if k == index else 0.0 for k in range(6)]
 
 
@@ -377,6 +382,7 @@ def _cross_force(velocity: Vector, force: Vector) -> Vector:
 
 
 def _cross(a: Sequence[Number], b: Sequence[Number]) -> Vector:
+    """Cross product of two vectors (3)."""
     return _multiply(_skew(a), list(b))
 
 
@@ -386,50 +392,56 @@ def _skew(a: Sequence[Number]) -> Matrix:
 
 
 def _dot(a: Sequence[Number], b: Sequence[Number]) -> Number:
-    """Scalar product; products with a constant zero are left out."""
+    """Scalar product of two vectors; products with a constant zero are left out."""
     terms = [x * y for x, y in zip(a, b, strict=True) if not (_is_zero(x) or _is_zero(y))]
     return sum(terms[1:], terms[0]) if terms else 0.0
 
 
 def _is_zero(x: Number) -> bool:
+    """Whether a Number is a constant zero, not a symbol."""
     return isinstance(x, float) and x == 0.0
 
 
 def _add(a: Sequence[Number], b: Sequence[Number]) -> Vector:
+    """Sum of two vectors."""
     return [y if _is_zero(x) else x if _is_zero(y) else x + y for x, y in zip(a, b, strict=True)]
 
 
 def _add_matrices(a: Matrix, b: Matrix) -> Matrix:
+    """Sum of two matrices."""
     return [_add(x, y) for x, y in zip(a, b, strict=True)]
 
 
 def _multiply(matrix: Matrix, vector: Sequence[Number]) -> Vector:
+    """Product of a matrix and a vector."""
     return [_dot(row, vector) for row in matrix]
 
 
 def _transpose(matrix: Matrix) -> Matrix:
+    """Transposed matrix."""
     return [list(row) for row in zip(*matrix, strict=True)]
 
 
 def _product(a: Matrix, b: Matrix) -> Matrix:
+    """Product of two matrices."""
     columns = _transpose(b)
     return [[_dot(row, column) for column in columns] for row in a]
 
 
 def _pad(block: Matrix) -> Matrix:
-    """Spatial matrix (6, 6) with an angular block (3, 3)."""
+    """Spatial matrix (6, 6) with an angular block (3, 3), otherwise zero."""
     return [*([*row, 0.0, 0.0, 0.0] for row in block), *([0.0] * 6 for _ in range(3))]
 
 
 def _congruence(transform: Matrix, inertia: Matrix) -> Matrix:
-    """transform^T inertia transform, symmetric."""
+    """Spatial inertia in another frame: transform^T inertia transform, symmetric."""
     columns = _transpose(transform)
     products = _transpose(_product(inertia, transform))
     return _mirror([[_dot(columns[r], products[c]) if c >= r else 0.0 for c in range(6)] for r in range(6)])
 
 
 def _subtract_outer(matrix: Matrix, column: Vector, pivot: Number) -> Matrix:
-    """matrix - column column^T / pivot, symmetric."""
+    """Matrix minus the outer product of a column with itself over a pivot, symmetric."""
     scaled = [0.0 if _is_zero(x) else x / pivot for x in column]
     return _mirror(
         [
@@ -447,5 +459,5 @@ def _subtract_outer(matrix: Matrix, column: Vector, pivot: Number) -> Matrix:
 
 
 def _mirror(upper: Matrix) -> Matrix:
-    """Symmetric matrix with the upper triangle of a matrix."""
+    """Symmetric matrix from its upper triangle."""
     return [[upper[min(r, c)][max(r, c)] for c in range(len(upper))] for r in range(len(upper))]

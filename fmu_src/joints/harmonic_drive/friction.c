@@ -1,5 +1,5 @@
-/* Repeats hysteresis.py and friction.py of the package; return mapping, shares and limits of the sliders are
- * generated. */
+/* Midline, hysteresis and friction of a drive. Repeats hysteresis.py and friction.py of the package; return mapping,
+ * shares and limits of the sliders are generated. */
 #include "harmonic_drive.h"
 
 #include <math.h>

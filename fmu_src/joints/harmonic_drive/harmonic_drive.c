@@ -220,6 +220,9 @@ void joint_derivative(Joint *joint, const double *inputs, const double *history,
     const double x_rates[] = {
         rate, y[1] * rate, y[2] * rate, hysteresis_rate, loss_derivative * rate, error[1] * seed[0], error[2] * seed[0],
         0.0};
+    enum { N_COMPUTED = N_OUTPUT_ARGUMENTS - PHI };
+    _Static_assert(sizeof values == N_COMPUTED * sizeof(double), "a value for each computed argument of outputs");
+    _Static_assert(sizeof x_rates == sizeof values, "a rate for each value");
     memcpy(x + PHI, values, sizeof values);
     memcpy(x + N_OUTPUT_ARGUMENTS + PHI, x_rates, sizeof x_rates);
     if (model->friction.is_active) {

@@ -188,7 +188,7 @@ def run(args: argparse.Namespace) -> CommandResult:
             "stiffness": {axis.joint: axis.spring.stiffness(torque) for axis, torque in under},
             "tip_error": plain_sunk,
         },
-        "rigid_joints": {axis.joint: rigid_joints.joint_figures(axis) for axis in axes},
+        "rigid_joints": {axis.joint: rigid_joints.rigid_drive_values(axis) for axis in axes},
         "longest_step": longest,
         "notes": notes,
     }
@@ -237,7 +237,7 @@ def _write_robot_with_plugins(
 def _format_results(result_values: dict[str, Any], model: Any) -> Sequence[str]:
     """Format the results of a robot with elastic drives as lines of text."""
     from ...exchange.robots.elastic import coordinate_unit
-    from ...exchange.robots.rigid_joints import format_figures
+    from ...exchange.robots.rigid_joints import format_rigid_drive_values
 
     span, payload, plain = result_values["frequencies"], result_values["payload"], result_values["plain"]
     return [
@@ -254,7 +254,7 @@ def _format_results(result_values: dict[str, Any], model: Any) -> Sequence[str]:
             for name, x in result_values["wind_up"].items()
         ),
         *(
-            f"{name} as a rigid joint: {format_figures(figures)}"
+            f"{name} as a rigid joint: {format_rigid_drive_values(figures)}"
             for name, figures in result_values["rigid_joints"].items()
         ),
         f"tip error at {result_values['tip']}: {1e3 * result_values['tip_error']:.4g} mm; in the plain file "

@@ -200,7 +200,7 @@ def _run_uncertainty(args: argparse.Namespace) -> CommandResult:
         report.draw_bands_and_indices(
             args.plot, bands, indices, f"{task.ramped_input.name} [{task.ramped_input.unit}]"
         )
-    document, lines = report.as_json(task, bands, indices), [report.format_table(task, bands, indices)]
+    document, lines = report.study_to_json(task, bands, indices), [report.format_table(task, bands, indices)]
     if args.out:
         counts, line = _count_runs(bands.sampled_outputs, args.out)
         document |= counts

@@ -21,22 +21,22 @@ from .spring_fit import FittedSpring, fit_spring
 from .transmission import Transmission
 
 ASSET_FOLDERS = ("meshdir", "texturedir")
-"""Attributes of `<compiler>` with the folders of meshes and textures."""
-MOTOR_SUFFIX = "_motor"
-"""Suffix in the name of a motor joint, after the name of the driven joint."""
-MOTOR_BODY_PREFIX = "drive_motors"
+"""Attributes of the MJCF element `<compiler>` that state the folders of meshes and textures."""
+MOTOR_NAME_SUFFIX = "_motor"
+"""Suffix of the name of a motor joint, after the name of the driven joint."""
+MOTOR_BODY_NAME_PREFIX = "drive_motors"
 """Prefix of the names of the bodies that carry the motors."""
 _MAX_JOINTS_PER_BODY = 6
 """Largest number of joints of a body in MuJoCo [1]."""
-_SMALL_TORQUE_REVERSAL_RATIO = 1e-6
-"""Torque reversal over the rated torque [1], for the stiffness of small vibrations."""
+_SMALL_REVERSAL_OVER_RATED_TORQUE = 1e-6
+"""Torque reversal over the rated torque [1] at which the stiffness of small vibrations is computed."""
 _MOTOR_BODY_MASS = 1e-12
 """Mass [kg] and inertia [kg.m2] of the bodies that carry the motors; the rotors are armatures."""
 
 
 @dataclass(frozen=True, slots=True)
 class ElasticAxis:
-    """Joint of the robot with its drive.
+    """Joint of a robot with its elastic drive.
 
     rotor_inertia : rotor inertia at the output [kg.m2]: that of the motor times the square of the ratio
     notes         : texts on deviations from the robot file or from the drive
@@ -54,7 +54,7 @@ class ElasticAxis:
 
     def stiffness(self, torque: float) -> float:
         """Stiffness [N.m/rad] of small vibrations about a torque [N.m], with all sliders sticking."""
-        reversal = float(np.copysign(_SMALL_TORQUE_REVERSAL_RATIO * self.drive.rated_torque, torque))
+        reversal = float(np.copysign(_SMALL_REVERSAL_OVER_RATED_TORQUE * self.drive.rated_torque, torque))
         before, after = self.drive.compute_wind_up([torque, torque - reversal])
         return reversal / float(before - after)
 
@@ -156,7 +156,7 @@ def add_drives(robot_spec: Any, axes_with_drive: list[ElasticAxis], has_springs:
         elastic_spec.delete(key)
     for i, axis in enumerate(axes_with_drive):
         if i % _MAX_JOINTS_PER_BODY == 0:
-            motors = _add_motor_body(elastic_spec, f"{MOTOR_BODY_PREFIX}{i // _MAX_JOINTS_PER_BODY + 1}")
+            motors = _add_motor_body(elastic_spec, f"{MOTOR_BODY_NAME_PREFIX}{i // _MAX_JOINTS_PER_BODY + 1}")
         motor = _add_motor(elastic_spec, motors, axis, model)
         if not has_springs:
             continue
@@ -173,7 +173,7 @@ def add_drives(robot_spec: Any, axes_with_drive: list[ElasticAxis], has_springs:
             )
             tendon.springyield = limit
             tendon.wrap_joint(axis.joint, 1.0)
-            tendon.wrap_joint(axis.joint + MOTOR_SUFFIX, -1.0 / axis.drive.ratio)
+            tendon.wrap_joint(axis.joint + MOTOR_NAME_SUFFIX, -1.0 / axis.drive.ratio)
     return elastic_spec
 
 
@@ -206,14 +206,14 @@ def _add_motor(robot_spec: Any, motor_body: Any, axis: ElasticAxis, rigid_model:
     import mujoco
 
     joint, ratio, number = robot_spec.joint(axis.joint), axis.drive.ratio, rigid_model.joint(axis.joint).id
-    motor = motor_body.add_joint(name=axis.joint + MOTOR_SUFFIX, type=mujoco.mjtJoint.mjJNT_SLIDE)
+    motor = motor_body.add_joint(name=axis.joint + MOTOR_NAME_SUFFIX, type=mujoco.mjtJoint.mjJNT_SLIDE)
     motor.armature = axis.rotor_inertia / ratio**2
     joint.armature = 0.0
     for actuator in robot_spec.actuators:
         if actuator.trntype == mujoco.mjtTrn.mjTRN_JOINT and actuator.target == axis.joint:
             if rigid_model.jnt_actfrclimited[number] and actuator.gear[0]:
                 _limit_force(actuator, rigid_model.jnt_actfrcrange[number] / actuator.gear[0])
-            actuator.target = axis.joint + MOTOR_SUFFIX
+            actuator.target = axis.joint + MOTOR_NAME_SUFFIX
             actuator.gear = np.asarray(actuator.gear) / ratio
     return motor
 

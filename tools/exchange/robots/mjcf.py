@@ -27,16 +27,16 @@ LOOP_DURATION = 1e4
 TIME_STEP = 0.002
 """Time step [s] of the written file, MuJoCo's default."""
 EXAMPLE_LINK_FREQUENCY = 60.0
-"""Natural frequency [Hz] of the link in the written file, with locked motor; defines its inertia."""
+"""Natural frequency [Hz] of the link in the written file, with locked motor; its inertia follows from it."""
 WIND_UP_TOLERANCE = 0.03
-"""Relative tolerance [1] of the wind-up at the largest fit torque."""
+"""Relative tolerance of the wind-up of a drive in MuJoCo [1], at the largest torque of the fit."""
 LOOP_AREA_TOLERANCE = 0.05
-"""Relative tolerance [1] of the area of the hysteresis loop."""
+"""Relative tolerance of the area of the hysteresis loop of a drive in MuJoCo [1]."""
 
 
 @dataclass(frozen=True, slots=True)
 class FitErrors:
-    """Relative errors of the drive fitted for MuJoCo against the law of the FMU.
+    """Relative errors of a drive in MuJoCo against the law of the FMU.
 
     wind_up : error of the wind-up [1] at the largest fit torque, for first loading
     area    : error of the loop area [1], for the loop between plus and minus this torque; None without
@@ -47,7 +47,7 @@ class FitErrors:
     area: float | None
 
     def format_lines(self, torque: float) -> Iterator[str]:
-        """Texts that compare the errors with their tolerances."""
+        """Lines of text that compare the errors of the drive in MuJoCo with their tolerances."""
         yield _compare_with_tolerance(f"wind-up at {torque:g} N.m", self.wind_up, WIND_UP_TOLERANCE)
         if self.area is None:
             yield "loop: none, the drive has no hysteresis"

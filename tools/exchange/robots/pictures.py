@@ -16,14 +16,14 @@ if TYPE_CHECKING:
     from mujoco import MjModel
 
 ANGLES_PER_GRID_AXIS = 21
-"""Number of angles per axis of the pose grid [1]."""
+"""Number of angles of each axis in the grid of poses [1]."""
 PAYLOAD_POINT_COUNT = 11
-"""Number of payloads [1]."""
+"""Number of payloads on the axis of the plot [1]."""
 FIGURE_SIZE = (9.0, 3.8)
 """Width and height of a figure [inch]."""
-CONSTANT_FREQUENCY_RATIO = 1e-6
+CONSTANT_FREQUENCY_RELATIVE_CHANGE = 1e-6
 """Relative change [1] of a frequency over the poses below which it is drawn as constant: it is rounding."""
-MIN_TORQUE_RATIO = 1e-9
+MIN_WEIGHT_OVER_RATED_TORQUE = 1e-9
 """Weight torque over the rated torque [1] below which an axis counts as not loaded: it is rounding."""
 
 
@@ -36,7 +36,7 @@ def select_grid_axes(axes: Sequence[ElasticAxis]) -> Sequence[ElasticAxis]:
 
 
 def list_angles(model: "MjModel", axis: ElasticAxis) -> Array:
-    """Angles [rad] of the pose grid over the range of an axis; a full turn for an axis without limits."""
+    """Angles [rad] of an axis in the grid of poses, over its range; a full turn for an unlimited axis."""
     joint = model.joint(axis.joint)
     low, high = model.jnt_range[joint.id] if model.jnt_limited[joint.id] else (-np.pi, np.pi)
     return np.linspace(low, high, ANGLES_PER_GRID_AXIS)
@@ -56,7 +56,10 @@ def compute_frequencies_over_grid(
 
 
 def grid_poses(model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, grid_angles: list[Array]) -> Array:
-    """Poses (k, n) of the grid, the last grid axis varying fastest; other joints are as in `pose`."""
+    """Poses (k, n) of the robot on the grid; the last grid axis varies fastest.
+
+    Joints outside the grid keep their position in `pose`.
+    """
     indices = [int(model.joint(axis.joint).qposadr[0]) for axis in select_grid_axes(axes)]
     mesh = np.stack(np.meshgrid(*grid_angles, indexing="ij"), axis=-1).reshape(-1, len(grid_angles))
     poses = np.tile(pose, (len(mesh), 1))
@@ -105,7 +108,7 @@ def largest_torques(
 
 def is_loaded(axis: ElasticAxis, torque: float) -> bool:
     """Whether a weight torque [N.m] of an axis is more than rounding."""
-    return abs(torque) > MIN_TORQUE_RATIO * axis.drive.rated_torque
+    return abs(torque) > MIN_WEIGHT_OVER_RATED_TORQUE * axis.drive.rated_torque
 
 
 def draw_frequencies(
@@ -119,7 +122,7 @@ def draw_frequencies(
             panel.set(title=f"frequency {i + 1} [Hz]", xlabel=f"{names[0]} [deg]")
             values = frequencies[..., i]
             mean = float(np.mean(values))
-            if np.ptp(values) <= CONSTANT_FREQUENCY_RATIO * mean:
+            if np.ptp(values) <= CONSTANT_FREQUENCY_RELATIVE_CHANGE * mean:
                 panel.set_title(f"frequency {i + 1}: {mean:.4g} Hz in all poses")
                 values = np.full_like(values, mean)
             if len(grid_angles) == 1:

@@ -12,7 +12,7 @@ from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
 
 from ..mujoco import FLANGE_INPUTS, plugin
-from .elastic import MOTOR_SUFFIX, ElasticAxis, add_drives
+from .elastic import MOTOR_NAME_SUFFIX, ElasticAxis, add_drives
 from .names import make_identifier
 
 
@@ -62,7 +62,7 @@ def format_robot_with_plugins(
         if node is None:
             node = ElementTree.SubElement(extension, "plugin", plugin=name)
         drive = ElementTree.SubElement(node, "instance", name=f"{axis.joint}_drive")
-        ElementTree.SubElement(drive, "config", key="phi1", value=axis.joint + MOTOR_SUFFIX)
+        ElementTree.SubElement(drive, "config", key="phi1", value=axis.joint + MOTOR_NAME_SUFFIX)
         ElementTree.SubElement(drive, "config", key="phi2", value=axis.joint)
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="unicode") + "\n"

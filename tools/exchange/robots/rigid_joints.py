@@ -17,13 +17,15 @@ from .transmission import Transmission
 if TYPE_CHECKING:
     from .elastic import ElasticAxis
 
-FIGURE_UNITS = {
+RIGID_DRIVE_VALUE_UNITS = {
     "armature": "kg.m2",
     "static_friction": "N.m",
     "dynamic_friction": "N.m",
     "viscous_friction": "N.m.s/rad",
 }
-"""{value of a joint with a rigid drive: its unit}."""
+"""Units of the numbers that describe a joint with a rigid drive: {number: unit}.
+
+The numbers are armature and friction."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,15 +43,15 @@ class JointFriction:
 
     @classmethod
     def for_drive(cls, drive: Transmission) -> "JointFriction":
-        """Friction of a drive, seen from its output."""
+        """Friction of the motor of a drive, seen from the output of the drive."""
         ratio = abs(drive.ratio)
         return cls(
             drive.static_friction * ratio, drive.dry_friction * ratio, drive.viscous_friction * ratio**2
         )
 
 
-def joint_figures(axis: "ElasticAxis") -> dict[str, float]:
-    """{name in FIGURE_UNITS: value} of a joint with a rigid drive."""
+def rigid_drive_values(axis: "ElasticAxis") -> dict[str, float]:
+    """Numbers that describe a robot's joint with a rigid drive: {name in RIGID_DRIVE_VALUE_UNITS: value}."""
     friction = JointFriction.for_drive(axis.drive)
     return {
         "armature": axis.rotor_inertia,
@@ -59,10 +61,11 @@ def joint_figures(axis: "ElasticAxis") -> dict[str, float]:
     }
 
 
-def format_figures(figures: Mapping[str, float]) -> str:
-    """Values of a joint as one line."""
+def format_rigid_drive_values(drive_values: Mapping[str, float]) -> str:
+    """Format the numbers of a joint with a rigid drive (armature, friction) as one line."""
     return ", ".join(
-        f"{name.replace('_', ' ')} {value:.4g} {FIGURE_UNITS[name]}" for name, value in figures.items()
+        f"{name.replace('_', ' ')} {value:.4g} {RIGID_DRIVE_VALUE_UNITS[name]}"
+        for name, value in drive_values.items()
     )
 
 
@@ -73,7 +76,7 @@ def format_actuators(axes: "Sequence[ElasticAxis]") -> str:
     """
     groups = {}
     for axis in axes:
-        figures = joint_figures(axis)
+        figures = rigid_drive_values(axis)
         groups[axis.joint] = {
             "joint_names_expr": [axis.joint],
             "armature": figures["armature"],
@@ -92,7 +95,7 @@ def add_rigid_drives(robot_spec: Any, axes: "Sequence[ElasticAxis]") -> Any:
     """
     rigid_spec = robot_spec.copy()
     for axis in axes:
-        figures, joint = joint_figures(axis), rigid_spec.joint(axis.joint)
+        figures, joint = rigid_drive_values(axis), rigid_spec.joint(axis.joint)
         joint.armature = figures["armature"]
         joint.frictionloss = float(joint.frictionloss) + figures["dynamic_friction"]
         damping = list(joint.damping)
@@ -103,6 +106,6 @@ def add_rigid_drives(robot_spec: Any, axes: "Sequence[ElasticAxis]") -> Any:
 def describe_drive(drive: Transmission) -> Iterator[str]:
     """Lines with the values of a joint with this drive, for a motor whose inertia is not known."""
     friction = JointFriction.for_drive(drive)
-    figures = {name: getattr(friction, name) for name in FIGURE_UNITS if name != "armature"}
-    yield f"as a rigid joint: {format_figures(figures)}"
+    figures = {name: getattr(friction, name) for name in RIGID_DRIVE_VALUE_UNITS if name != "armature"}
+    yield f"as a rigid joint: {format_rigid_drive_values(figures)}"
     yield f"  armature: {drive.ratio**2:g} times the inertia of the rotor and the wave generator"

@@ -126,7 +126,10 @@ def _find_link(model: "MjModel", body: int) -> int:
 
 
 def _joint_axes(axis: Array, carrier: Array) -> Array:
-    """Axes (3, 3) of the frame of a joint: z along the joint axis, x normal to it and to z of `carrier`."""
+    """Axes (3, 3) of a joint's frame: z along the joint axis, x normal to it and to z of `carrier`.
+
+    carrier : axes of the link that carries the joint
+    """
     z = axis / np.linalg.norm(axis)
     x = np.cross(carrier[:, 2], z)
     if np.linalg.norm(x) < 1e-9:  # parallel
@@ -162,5 +165,5 @@ def _clear_rounding_errors(values: Array, scale: float = 1.0) -> Array:
 
 
 def _first(value: Any) -> float:
-    """Linear coefficient of a quantity that MuJoCo stores as a number or as a polynomial."""
+    """Linear coefficient of a stiffness or damping that MuJoCo stores as a number or as a polynomial."""
     return float(np.ravel(value)[0])

@@ -50,7 +50,7 @@ _XYZ = ("x", "y", "z")
 
 
 class Coordinate(NamedTuple):
-    """Names and units of the variables of a joint: position, speed, force, and motion since the start."""
+    """Names and units of a joint's variables: position, speed, force, and motion since the start."""
 
     position: str
     speed: str
@@ -62,26 +62,28 @@ class Coordinate(NamedTuple):
 
 
 HINGE = Coordinate("phi", "w", "tau", "rotation", "angle", "rad", "N.m")
+"""Names and units of the variables of a hinge."""
 SLIDE = Coordinate("s", "v", "f", "displacement", "position", "m", "N")
+"""Names and units of the variables of a slide."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class HingeParameters(CheckedParameters):
-    """Parameters of a hinge."""
+    """Parameters of the FMU for a hinge of the robot."""
 
     phi_start: float = quantity_field("rad", "angle of the joint at the start")
 
 
 @dataclass(frozen=True, kw_only=True)
 class SlideParameters(CheckedParameters):
-    """Parameters of a slide."""
+    """Parameters of the FMU for a slide of the robot."""
 
     s_start: float = quantity_field("m", "position of the joint at the start")
 
 
 @dataclass(frozen=True, kw_only=True)
 class RotorParameters(CheckedParameters):
-    """Parameters of a motor."""
+    """Parameters of the FMU for the rotor of a drive's motor: its inertia."""
 
     J: float = quantity_field(
         "kg.m2", "moment of inertia of rotor and wave generator about their axis", gt=0.0
@@ -90,14 +92,14 @@ class RotorParameters(CheckedParameters):
 
 @dataclass(frozen=True, kw_only=True)
 class DrivenHingeParameters(HingeParameters):
-    """Parameters of a hinge with a drive."""
+    """Parameters of the FMU for a hinge of the robot with a drive."""
 
     motor: RotorParameters = group_field("motor of the joint")
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class RobotJoint:
-    """Joint of a robot.
+    """Joint of the robot, with or without a drive.
 
     name          : first part of the names of its variables
     link          : link behind the joint
@@ -118,11 +120,11 @@ class RobotJoint:
 
     @property
     def coordinate(self) -> Coordinate:
-        """Names and units of its variables."""
+        """Names and units of the variables of this joint."""
         return SLIDE if self.link.is_slide else HINGE
 
     def make_parameters(self) -> CheckedParameters:
-        """Parameter set of the joint."""
+        """Parameter set of the FMU for this joint."""
         if self.link.is_slide:
             return SlideParameters(s_start=self.start)
         if self.drive:
@@ -146,11 +148,11 @@ class RobotArm:
     has_motor_angles: bool
 
     def is_free(self, joint: RobotJoint) -> bool:
-        """Whether the joint position is a state."""
+        """Whether the position of a joint is a state of the FMU."""
         return joint.drive is not None or not self.has_motor_angles
 
     def list_inputs(self) -> list[Variable]:
-        """Inputs: those of the motors, and the torques of the drives."""
+        """Inputs of the arm: those of the motors, and the torques of the drives."""
         variables = []
         for joint in self.joints:
             c, name = joint.coordinate, joint.name
@@ -177,7 +179,7 @@ class RobotArm:
         return variables
 
     def list_states(self) -> tuple[list[Variable], list[Variable], list[Variable]]:
-        """Positions, speeds and accelerations of the free joints, then of the rotors."""
+        """States and their rates: positions, speeds, accelerations of the free joints, then of the rotors."""
         positions, speeds, accelerations = [], [], []
         for joint in filter(self.is_free, self.joints):
             c, name = joint.coordinate, joint.name
@@ -216,7 +218,7 @@ class RobotArm:
         return variables
 
     def evaluate_outputs(self, parameters: Any, values: Mapping[str, Number]) -> dict[str, Number]:
-        """All outputs, for a parameter set and the values of time, inputs and states."""
+        """All outputs of the arm, for a parameter set and the values of time, inputs and states."""
         positions, speeds, motion, tip = self.compute_motion(parameters, values)
         outputs = dict(values)
         for i, joint in enumerate(self.joints):
@@ -328,7 +330,7 @@ class RobotArm:
         return SystemComponent("", self._make_model(parameter_class), file, sources, start_values)
 
     def _make_model(self, parameter_class: type) -> Model:
-        """Model of the component."""
+        """Model of the arm as a component of a system."""
         inputs, states, kinematic_outputs = (
             self.list_inputs(),
             self.list_states(),

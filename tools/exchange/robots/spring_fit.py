@@ -10,13 +10,15 @@ from jointfmu.quantity import Array
 
 from .transmission import LOOP_POINTS, RAMP_POINTS, Transmission, loop_area
 
-YIELD_WIND_UP_RATIOS = np.geomspace(0.02, 0.4, 6)
+YIELD_OVER_MAX_WIND_UPS = np.geomspace(0.02, 0.4, 6)
 """Candidate yield wind-ups of the springs over the largest wind-up of the fit [1].
 
 All springs yield within the range of the fit, so no spring adds hysteresis beyond it.
 """
-MIN_LOOP_AREA_RATIO = 1e-6
-"""Loop area over its bounding box [1] below which it counts as zero: round-off of the drive's inversion."""
+MIN_LOOP_OVER_BOX_AREA = 1e-6
+"""Area of the hysteresis loop over that of its bounding box [1], below which it counts as zero.
+
+Round-off of the drive's inversion leaves about this area."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,8 +75,8 @@ def fit_spring(drive: Transmission, max_torque: float) -> FittedSpring:
     """
     torques, x = drive.compute_loop(max_torque)
     largest = float(np.max(np.abs(x)))
-    has_hysteresis = abs(loop_area(x, torques)) > MIN_LOOP_AREA_RATIO * 4.0 * max_torque * largest
-    limits = (YIELD_WIND_UP_RATIOS * largest).tolist() if has_hysteresis else []
+    has_hysteresis = abs(loop_area(x, torques)) > MIN_LOOP_OVER_BOX_AREA * 4.0 * max_torque * largest
+    limits = (YIELD_OVER_MAX_WIND_UPS * largest).tolist() if has_hysteresis else []
     sliders: tuple[tuple[float, float], ...] = ()
     if has_hysteresis:
         forces = [compute_unit_slider_torque(x, y) for y in limits]

@@ -1,4 +1,4 @@
-"""Data of a drive between motor and link, for robot models."""
+"""Data of a drive between motor and link, for robot models (transmission)."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -11,12 +11,12 @@ from jointfmu.quantity import Array
 RAMP_POINTS = 200
 """Number of points of the ramp to the largest torque [1]."""
 LOOP_POINTS = 800
-"""Number of points of the loop after the ramp [1]."""
+"""Number of points of the hysteresis loop after the ramp [1]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Transmission:
-    """A drive between a motor and a link.
+    """Drive between a motor and a link of a robot, as its models need it.
 
     name             : name of the parameter file
     ratio            : motor speed over link speed [1], negative for opposite directions

@@ -15,6 +15,7 @@ NEGLIGIBLE_INERTIA_ELEMENT = (
     '<inertial><mass value="0.001"/><inertia ixx="1e-6" ixy="0" ixz="0" iyy="1e-6" iyz="0" izz="1e-6"/>'
     "</inertial>"
 )
+"""URDF element of a negligible inertia, which simulators require of every link."""
 
 
 def format_urdf(drive: Transmission, torque: float) -> tuple[str, None, list[str]]:

@@ -1,1 +1,1 @@
-"""Modal reduction of the bodies of a bolted joint, for `BoltedJoint` with elastic sides."""
+"""Modal reduction of the elastic bodies of a bolted joint, for `BoltedJoint` with elastic sides."""

@@ -2,10 +2,10 @@
 
 The modes come from a proper orthogonal decomposition, in the energy norm, of computed load steps of the joint
 (`states`). The opening or tangential displacement of a mode at a point of the reduced joint is its mean over
-the cell of the point, weighted by the interface stiffness. A mean misses the variation inside of the cell. So
-all means are corrected together: the preloaded interface gets the same stiffness against all modes as in the
-finite-element model. At the friction patches, the displacements are then fitted to the work of friction
-(`patch_work`).
+the cell of the point (the part of the contact nearest to it), weighted by the interface stiffness. A mean
+misses the variation inside of the cell. So all means are corrected together: the preloaded interface gets the
+same stiffness against all modes as in the finite-element model. At the friction patches, the displacements
+are then fitted to the work of friction (`patch_work`).
 """
 
 from typing import Any
@@ -34,7 +34,7 @@ from .patch_work import (
 )
 from .states import approach_at_stiffness, averaging_matrix, compute_states
 
-MIN_SINGULAR_VALUE_RATIO = 1e-3
+MIN_OVER_MAX_SINGULAR_VALUE = 1e-3
 """Singular value over the largest one [1], below which a mode is left out; all states have equal energy."""
 OPENING_STATE_WEIGHT = 0.5
 """Weight of states with opening over the weight of states in shear alone [1], in the decomposition: the
@@ -49,7 +49,7 @@ MAX_DISPLACEMENT_CORRECTION = 10.0
 def reduce_bodies(
     linear_joint: LinearJoint, reduced_joint: BoltedJointSpring, normal_stiffness: Array, preload: float
 ) -> ElasticBodies:
-    """Modes of the bodies at the points, patches and bolts of a joint, for a preload [N] per bolt.
+    """Modes of the elastic bodies at the points, patches and bolts of a joint, for a preload [N] per bolt.
 
     linear_joint     : linear finite-element model of the joint
     reduced_joint    : the reduced joint
@@ -160,7 +160,7 @@ def _to_tuple(values: Array) -> tuple[float, ...]:
 def _energy_modes(
     linear_joint: LinearJoint, state_deformations: Array, state_forces: Array, motions: Array
 ) -> Array:
-    """Compute modes (n, k) of the bodies that are orthonormal in the energy norm.
+    """Compute modes (n, k) of the elastic bodies that are orthonormal in the energy norm.
 
     The first modes span the response of the linear joint to unit motions; the others come from the proper
     orthogonal decomposition of the remaining deformation.
@@ -197,17 +197,20 @@ def _decompose_orthogonally(displacements: Array, forces: Array) -> tuple[Array,
     forces : (n, s) stiffness matrix times the displacement fields
 
     Returns orthonormal modes (n, k), the largest singular value first, without those below
-    MIN_SINGULAR_VALUE_RATIO, and their forces (n, k).
+    MIN_OVER_MAX_SINGULAR_VALUE, and their forces (n, k).
     """
     energy, vectors = np.linalg.eigh(displacements.T @ forces)
     energy, vectors = energy[::-1], vectors[:, ::-1]
-    count = int(np.sum(energy > MIN_SINGULAR_VALUE_RATIO**2 * energy[0]))
+    count = int(np.sum(energy > MIN_OVER_MAX_SINGULAR_VALUE**2 * energy[0]))
     factors = vectors[:, :count] / np.sqrt(energy[:count])
     return displacements @ factors, forces @ factors
 
 
 def _rigid_opening(position: Array) -> Array:
-    """Opening (n, 3) at positions (n, 2) [m] by rigid-body motions: along z, about x and about y."""
+    """Opening (n, 3) [1, m] of the contact at positions (n, 2) [m] by rigid-body motions.
+
+    The motions are along z, about x and about y.
+    """
     x, y = position.T
     return np.stack([np.ones_like(x), y, -x], axis=1)
 

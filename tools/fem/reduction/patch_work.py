@@ -37,7 +37,7 @@ for the steps."""
 MIN_DISPLACEMENT = 1e-15
 """Smallest tangential displacement in divisions [m]; also the smallest relative loss in scales [1]."""
 MIN_RELATIVE_DISPLACEMENT_SCALE = 0.03
-"""Displacement of the patches by a mode over that by the most effective mode [1]: lower limit for scales."""
+"""Lower limit of the scale of patch displacements by a mode, over the largest scale of all modes [1]."""
 
 
 def shear_combinations(state_motions: Array) -> Array:
@@ -107,7 +107,10 @@ class FrictionWork:
 
 
 def _force_scale(forces: Array) -> Array:
-    """Divisors (s, 3 + k) of generalised forces: one for x and y, one for the moment, one for the modes."""
+    """Divisors (s, 3 + k) of errors of generalised forces.
+
+    There is one divisor for x and y, one for the moment, and one for the modes.
+    """
     force, moment, modes = (np.linalg.norm(f, axis=1) for f in (forces[:, :2], forces[:, 2:3], forces[:, 3:]))
     lever_arm = np.max(moment) / np.max(force)
     force = np.hypot(force, moment / lever_arm)
@@ -293,7 +296,10 @@ class PatchFit:
         )
 
     def _work_errors(self, patch_displacement: Array) -> tuple[Array, tuple[Array, MonotonicFriction]]:
-        """Relative errors [1] of forces, stick forces and losses.
+        """Relative errors [1] of the friction of the reduced patches against that at all quadrature points.
+
+        The errors are those of generalised friction forces, of these forces if nothing slips (stick forces),
+        and of the losses per cycle, in all states in shear.
 
         Returns the errors, and the displacement and friction of the sliders.
         """
@@ -313,7 +319,7 @@ class PatchFit:
     def _work_jacobian(
         self, patch_displacement: Array, displacement: Array, friction: MonotonicFriction
     ) -> Array:
-        """Derivative of the relative errors of forces and loss with respect to the patch displacements.
+        """Derivative of `_work_errors` (friction forces and losses) with respect to the patch displacements.
 
         displacement, friction : displacement (2 c m, 3 + k) and friction of the sliders
         """
@@ -435,7 +441,7 @@ def evaluate_friction(
 def assemble_friction_work(
     monotonic_friction: MonotonicFriction, point_area: Array, displacement: Array
 ) -> FrictionWork:
-    """Generalised forces and loss of the friction of n points.
+    """Generalised friction forces and energy loss of n points in contact.
 
     point_area   : (n) [m2]
     displacement : (2 n, 3 + k) of the points by motions and modes
@@ -470,7 +476,7 @@ def compute_friction_work(
     friction_points: FrictionPoints,
     modal_displacement: Array,
 ) -> FrictionWork:
-    """Generalised forces and loss of the friction of n points in states of the joint.
+    """Generalised friction forces and energy loss of n points, in states of the joint.
 
     modal_displacement : (2 n, k) [1] of the points along x, then along y, by the modes
     """

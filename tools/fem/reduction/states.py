@@ -1,10 +1,10 @@
 """States of a joint in monotonic loading into slip and opening: the snapshots for the modes of its bodies.
 
-The contact is divided into one cell for each point of the reduced joint. The compliance of the bodies under
-loads on cells and bolts comes from finite elements. With the interface law in each cell, motions along and
-about all axes give states of the complete joint. States in shear alone are then brought to equilibrium with
-the law at all quadrature points: cells alone miss the tangential displacement at the edge of slip, and with
-it part of the loss.
+The contact is divided into cells, one for each point of the reduced joint: the part of the contact that is
+nearest to the point. The compliance of the bodies under loads on cells and bolts comes from finite elements.
+With the interface law in each cell, motions along and about all axes give states of the complete joint.
+States in shear alone are then brought to equilibrium with the law at all quadrature points: cells alone miss
+the tangential displacement at the edge of slip, and with it part of the loss.
 """
 
 from collections.abc import Iterator
@@ -24,9 +24,9 @@ from ..elasticity import Cholesky
 from ..whole_joint import COORDINATE_AXES, MIRROR_SIGNS, JointFiniteElements, LinearJoint
 from .patch_work import MIN_DISPLACEMENT
 
-SHEAR_MOTION_RATIOS = (0.05, 0.2, 0.4, 0.6, 0.8, 1.0, 1.3)
+SHEAR_MOTIONS_OVER_SLIP_MOTION = (0.05, 0.2, 0.4, 0.6, 0.8, 1.0, 1.3)
 """Motions along x, y and about z over the motion at which the linear joint reaches its friction limit [1]."""
-OPENING_MOTION_RATIOS = (-0.6, -0.2, 0.3, 0.6, 0.9, 1.2)
+OPENING_MOTIONS_OVER_UNLOADING_MOTION = (-0.6, -0.2, 0.3, 0.6, 0.9, 1.2)
 """Motions along z and about x, y, over the motion at which the linear joint loses its preload force [1]."""
 COMBINED_MOTION_COUNT = 12
 """Number of motions along and about all axes at once."""
@@ -148,7 +148,7 @@ def averaging_matrix(
 
 @dataclass(frozen=True)
 class CellwiseJoint:
-    """Joint with the interface law in n cells and b bolts, for monotonic motions of side 2.
+    """Joint with the interface law in n cells of the contact and b bolts, for monotonic motions of side 2.
 
     reduced_joint      : the reduced joint; it gives the law
     compliance         : compliance of the bodies (3 n + b, 3 n + b) [m/N]
@@ -167,7 +167,11 @@ class CellwiseJoint:
     def from_cells(
         cls, unit_load_response: UnitLoadResponse, bolt_positions: Array, preload: float
     ) -> "CellwiseJoint":
-        """Joint preloaded by bolts at positions (b, 2) [m], with the compliance of its cells."""
+        """Joint preloaded by bolts at positions (b, 2) [m], with the compliance of its elastic bodies.
+
+        The compliance is between loads on the cells (parts of the contact around the points) and on the
+        bolts.
+        """
         spring = unit_load_response.reduced_joint
         compliance = np.asarray(
             unit_load_response.averaging_operators @ unit_load_response.unit_load_displacement
@@ -184,7 +188,7 @@ class CellwiseJoint:
 
     @cached_property
     def _preload_pressure(self) -> Array:
-        """Pressure (n) [Pa] of the cells in the preloaded joint."""
+        """Pressure (n) [Pa] on the contact cells of the preloaded joint."""
         return self.reduced_joint.curve.derivatives(self.preload_approach, 0)[0]
 
     def cell_forces(self, displacements: Array) -> tuple[Array, "CellTangentStiffness"]:
@@ -217,7 +221,7 @@ class CellwiseJoint:
         return force, CellTangentStiffness(np.concatenate(diagonal), area * softening * u * v)
 
     def stiffness(self) -> Array:
-        """Stiffness (6, 6) [N/m, N, N.m] of the preloaded joint."""
+        """Stiffness (6, 6) [N/m, N, N.m] of the preloaded joint between its attachments."""
         tangent = self.cell_forces(np.zeros(len(self.rigid_displacement)))[1]
         displacement = tangent.solve(self.compliance, self.rigid_displacement)
         return np.asarray(self.rigid_displacement.T @ tangent.multiply(displacement))
@@ -254,7 +258,9 @@ class CellwiseJoint:
         load = clamping * np.array([joint.mu, joint.mu, 1.0, radius, radius, joint.mu * radius])
         unit = load / K
         for axis in range(6):
-            for factor in OPENING_MOTION_RATIOS if axis in (2, 3, 4) else SHEAR_MOTION_RATIOS:
+            for factor in (
+                OPENING_MOTIONS_OVER_UNLOADING_MOTION if axis in (2, 3, 4) else SHEAR_MOTIONS_OVER_SLIP_MOTION
+            ):
                 yield factor * unit * (np.arange(6) == axis)
         for number in range(COMBINED_MOTION_COUNT):
             yield (2.0 * ((0.5 + (number + 1.0) * LOW_DISCREPANCY_STEPS) % 1.0) - 1.0) * unit
@@ -272,12 +278,12 @@ class CellTangentStiffness:
     diagonal_stiffness: Array
     tangential_coupling: Array
 
-    def multiply(self, matrix: Array) -> Array:
-        """Product with a matrix (3 n + b, k)."""
+    def multiply(self, displacements: Array) -> Array:
+        """Product (3 n + b, k) of the tangent stiffness and a matrix of displacements (3 n + b, k)."""
         n = self.tangential_coupling.size
-        product = self.diagonal_stiffness[:, None] * matrix
-        product[n : 2 * n] += self.tangential_coupling[:, None] * matrix[2 * n : 3 * n]
-        product[2 * n : 3 * n] += self.tangential_coupling[:, None] * matrix[n : 2 * n]
+        product = self.diagonal_stiffness[:, None] * displacements
+        product[n : 2 * n] += self.tangential_coupling[:, None] * displacements[2 * n : 3 * n]
+        product[2 * n : 3 * n] += self.tangential_coupling[:, None] * displacements[n : 2 * n]
         return product
 
     def solve(self, compliance: Array, right_side: Array) -> Array:
@@ -292,10 +298,10 @@ class CellTangentStiffness:
         below = np.divide(self.tangential_coupling, along_x, out=np.zeros(n), where=along_x > 0.0)
         root[2 * n : 3 * n] = np.sqrt(np.maximum(self.diagonal_stiffness[2 * n : 3 * n] - below**2, 0.0))
 
-        def multiply_root(matrix: Array) -> Array:
-            """L^T times a matrix (3 n + b, ...)."""
-            product = (root * matrix.T).T
-            product[n : 2 * n] += (below * matrix[2 * n : 3 * n].T).T
+        def multiply_root(displacements: Array) -> Array:
+            """Product of L^T and a matrix (3 n + b, ...), L the root of the tangent stiffness."""
+            product = (root * displacements.T).T
+            product[n : 2 * n] += (below * displacements[2 * n : 3 * n].T).T
             return product
 
         spread = multiply_root(compliance)

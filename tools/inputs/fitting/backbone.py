@@ -28,21 +28,20 @@ from jointfmu.quantity import Array
 
 from .branches import find_reversals
 
-MIN_TORQUE_REVERSAL_RATIO = 0.1
+MIN_REVERSAL_OVER_TORQUE_RANGE = 0.1
 """Smallest reversal of the torque that counts as a turning point, over the range of the torque [1]."""
 CENTRAL_TORQUE_RANGE_FRACTION = 0.25
 """Central fraction of the torque range [1], in which friction is fully reversed on both branches."""
-MIN_BRANCH_RANGE_RATIO = 0.9
-"""Range of a branch over the torque range [1], from which the branch counts as covering the full range."""
+MIN_BRANCH_OVER_RECORD_TORQUE_RANGE = 0.9
+"""Torque range of a branch over that of the whole record [1], from which the branch covers the full range."""
 MAX_KNOTS, POINTS_PER_KNOT = 41, 20
 """Maximum number of knots of the piecewise linear curves, and number of samples for each knot."""
 MAX_BACKBONE_POINTS = 400
-"""Maximum number of points of the backbone; more samples are averaged in groups of neighbouring torque."""
+"""Largest number of points of the backbone [1]; more samples are averaged in groups of similar torque."""
 MIN_INDEPENDENT_DRIFT_FRACTION = 0.05
-"""Fraction of the drift column of the design matrix [1] that is linearly independent of the other columns,
-above which the drift counts as determined."""
+"""Independent fraction of the drift's column in the design matrix [1]: above, the drift is determined."""
 MONOTONICITY_CHECK_INTERVALS = 10
-"""Number of equal torque intervals in which the backbone is checked to be monotonic."""
+"""Number of equal torque intervals in which the backbone is checked to be monotonic [1]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +104,7 @@ def find_backbone(torque: Array, angle: Array) -> Backbone:
 
 def _cut_branches(torque: Array) -> list[_Branch]:
     """Cut a record into branches at the turning points of the torque, in the order of the measurement."""
-    turns = find_reversals(torque, MIN_TORQUE_REVERSAL_RATIO * float(np.ptp(torque)))
+    turns = find_reversals(torque, MIN_REVERSAL_OVER_TORQUE_RANGE * float(np.ptp(torque)))
     ends = np.concatenate([[0], turns, [torque.size - 1]])
     branches = []
     for first, last in pairwise(ends):
@@ -121,7 +120,9 @@ def _full_range_branches(branches: list[_Branch]) -> list[_Branch]:
     selected = []
     for rising in (True, False):
         same = [b for b in branches if b.is_rising is rising]
-        selected += [b for b in same if b.max_torque - b.min_torque >= MIN_BRANCH_RANGE_RATIO * span] or same
+        selected += [
+            b for b in same if b.max_torque - b.min_torque >= MIN_BRANCH_OVER_RECORD_TORQUE_RANGE * span
+        ] or same
     return sorted(selected, key=lambda b: int(b.sample_indices[0]))
 
 
@@ -162,7 +163,7 @@ def _separate_hysteresis(
     gap_values = slice(knots, knots + int(np.sum(open_gap)))
 
     def weighted_gap(knot_weights: Array) -> tuple[float, float]:
-        """Weighted sum of the half gaps at the knots, and its standard deviation."""
+        """Weighted sum of the half gaps between the branches at the knots, and its standard deviation."""
         row = knot_weights[open_gap]
         return float(row @ values[gap_values]), float(np.sqrt(row @ covariance[gap_values, gap_values] @ row))
 
@@ -217,7 +218,7 @@ def _has_turning_point(
         and branch.sample_indices[-1] == next_branch.sample_indices[0]
         and branch.is_rising is (end_index == -1)
         and abs((branch.max_torque if branch.is_rising else branch.min_torque) - end_torque)
-        < (1.0 - MIN_BRANCH_RANGE_RATIO) * torque_range
+        < (1.0 - MIN_BRANCH_OVER_RECORD_TORQUE_RANGE) * torque_range
         for branch, next_branch in pairs
     )
 
@@ -231,7 +232,7 @@ def _is_drift_determined(design_matrix: scipy.sparse.csr_matrix) -> bool:
 
 
 def _average_groups(torque: Array, angle: Array) -> tuple[Array, Array, Array]:
-    """Average samples in groups of neighbouring torque, at most MAX_BACKBONE_POINTS.
+    """Average the samples of a record in groups of similar torque, at most MAX_BACKBONE_POINTS.
 
     Returns mean torque, mean angle and size (n) of the groups.
     """
@@ -244,7 +245,7 @@ def _average_groups(torque: Array, angle: Array) -> tuple[Array, Array, Array]:
 
 
 def _check_monotone(backbone: Backbone) -> Backbone:
-    """Return the backbone; ValueError if its angle falls between neighbouring tenths of the torque range."""
+    """Return a backbone; ValueError if its angle falls between neighbouring tenths of the torque range."""
     edges = np.linspace(backbone.torque[0], backbone.torque[-1], MONOTONICITY_CHECK_INTERVALS + 1)
     tenth = np.clip(
         np.searchsorted(edges, backbone.torque, side="right") - 1, 0, MONOTONICITY_CHECK_INTERVALS - 1

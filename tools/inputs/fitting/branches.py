@@ -16,24 +16,23 @@ from jointfmu.quantity import Array
 
 from .hysteresis import HysteresisLaw
 
-MIN_MOTION_REVERSAL_RATIO = 0.02
+MIN_REVERSAL_OVER_MOTION_RANGE = 0.02
 """Smallest reversal of the motion that counts as a turning point, over the range of the motion [1]."""
-MIN_REVERSAL_NOISE_RATIO = 8.0
+MIN_REVERSAL_OVER_NOISE = 8.0
 """Smallest reversal that counts as a turning point, over the standard deviation of the noise [1]."""
-TURNING_POINT_NOISE_RATIO = 5.0
+TURNING_POINT_DEVIATION_OVER_NOISE = 5.0
 """Deviation from the motion at a turning point, over the standard deviation of the noise [1], up to which
 samples enter the parabola of the turning point."""
 MIN_BRANCH_SAMPLES = 5
 """Minimum number of samples of a branch."""
-MAX_CREATED_ENERGY_RATIO = 4.0
+MAX_CREATED_ENERGY_OVER_AREA_DEVIATION = 4.0
 """Energy that a loop may create (negative area), over the standard deviation of its area [1]."""
 RELATIVE_ROUNDING = 1e-9
 """Relative round-off [1] of data without noise: of areas over range of force times range of motion, of
 motions over their range."""
-MIN_COMMON_RANGE_RATIO = 0.9
-"""Range of motion common to two branches, over the range of the longer branch [1], from which they count as
-a closed loop."""
-RISE_FRACTION = 0.9
+MIN_COMMON_OVER_LONGER_MOTION_RANGE = 0.9
+"""Motion range common to two branches over that of the longer branch [1], from which they close a loop."""
+RISING_FORCE_FRACTION = 0.9
 """Force change since the turning point over that of the whole branch [1], up to which a branch counts as
 rising. Beyond it a slipped branch is flat."""
 FLAT_FRACTION, MAX_FLAT_RISE = 0.3, 0.05
@@ -47,11 +46,11 @@ MIN_BEARING_RISE, MIN_BEARING_SLOPE_RATIO = 0.2, 3.0
 """Rise of the force after the softest part over that of the branch [1], and stiffness there over that of the
 softest part [1], from which a joint bears after slip."""
 MIN_BEARING_NOISE = 8.0
-"""Rise of the stiffness over its standard deviation by noise [1], from which a joint bears after slip."""
+"""Rise of a branch's stiffness over its standard deviation [1], from which a joint bears after slip."""
 MIN_RISING_SAMPLES = 5
 """Number of samples on the rising part of a branch from which its stiffness counts as resolved."""
 _AREA_INTEGRATION_POINTS = 200
-"""Points of the integration grid for the area between two branches."""
+"""Number of points of the grid for the area between two branches [1]."""
 _MAX_REST_ITERATIONS, _REST_DIFFERENCE_STEP = 6, 1e-4
 """Gauss-Newton iterations for the rest position, and half the difference step over the motion's range [1]."""
 
@@ -119,7 +118,7 @@ class Loops:
         slopes = []
         for k in range(self.start_motion.size):
             distance, change = self.branch_curve(k)
-            rising = int(np.argmax(change >= RISE_FRACTION * np.max(change)))
+            rising = int(np.argmax(change >= RISING_FORCE_FRACTION * np.max(change)))
             if (rising >= MIN_RISING_SAMPLES) is not is_resolved:
                 continue
             if is_resolved:
@@ -245,6 +244,7 @@ class Loops:
         size = float(np.ptp(self.motion))
 
         def misfit(rest_motion: float) -> Array:
+            """Sum of squared residuals with a rest motion."""
             residual = (
                 without_friction
                 - force(self.motion - rest_motion)
@@ -262,7 +262,7 @@ class Loops:
         return position
 
     def residuals(self, law: HysteresisLaw, residual_scale: Array) -> Array:
-        """Residuals against a law, over their standard deviations [1].
+        """Residuals of measured loops against a hysteresis law, over their standard deviations [1].
 
         These are the force errors (n), then the shifts of the turning points (branches), then the force steps
         between slipping branches (`slip_steps`): the offsets of the branches would hide them.
@@ -277,13 +277,17 @@ class Loops:
     def _slip_step_residual(
         self, law: HysteresisLaw, slip_step: "SlipStep", start_motion: Array, residual_scale: Array
     ) -> float:
-        """Force step between two slipping branches, measured minus law, over its standard deviation [1].
+        """Measured minus computed force step between two slipping branches, over its standard deviation [1].
+
+        law and start_motion give the computed step; start_motion : fitted motion at the turning point of each
+        branch
 
         start_motion : fitted motion (branches) at the turning points
         """
         k = slip_step.branch_number
 
         def mean_change(samples: NDArray[np.int64], start: float) -> float:
+            """Mean force change of the law over samples, from a start motion."""
             return float(np.mean(law.force_change(self.motion[samples], np.full(samples.size, start))))
 
         before, after = start_motion[k - 1], start_motion[k]
@@ -400,7 +404,8 @@ def _branches_of_run(
 def find_turning_points(motion: Array) -> NDArray[np.int64]:
     """Find the indices of the turning points of a motion; reversals within the noise do not count."""
     least = max(
-        MIN_MOTION_REVERSAL_RATIO * float(np.ptp(motion)), MIN_REVERSAL_NOISE_RATIO * noise_deviation(motion)
+        MIN_REVERSAL_OVER_MOTION_RANGE * float(np.ptp(motion)),
+        MIN_REVERSAL_OVER_NOISE * noise_deviation(motion),
     )
     if not least > 0.0:
         return np.array([], dtype=np.int64)
@@ -421,10 +426,10 @@ def refine_turning_point(motion: Array, sample_index: int, motion_noise: float) 
 
     motion_noise : standard deviation of the noise of the motion
 
-    The parabola uses the samples within TURNING_POINT_NOISE_RATIO deviations of the turning point.
+    The parabola uses the samples within TURNING_POINT_DEVIATION_OVER_NOISE deviations of the turning point.
     The extreme sample itself would overestimate the motion, because of its noise.
     """
-    distinct = np.abs(motion - motion[sample_index]) > TURNING_POINT_NOISE_RATIO * motion_noise
+    distinct = np.abs(motion - motion[sample_index]) > TURNING_POINT_DEVIATION_OVER_NOISE * motion_noise
     before, after = np.flatnonzero(distinct[:sample_index]), np.flatnonzero(distinct[sample_index:])
     width = min(
         sample_index - int(before[-1]) if before.size else sample_index,
@@ -475,13 +480,17 @@ def _check_work(
     deviation = noise * size * np.sqrt(2.0 / samples)
     if rise < -abs(area) / size:
         raise ValueError(f"{message_prefix}{_SIGN_ERROR}")
-    if area < -max(MAX_CREATED_ENERGY_RATIO * deviation, RELATIVE_ROUNDING * size * float(np.ptp(force))):
+    if area < -max(
+        MAX_CREATED_ENERGY_OVER_AREA_DEVIATION * deviation, RELATIVE_ROUNDING * size * float(np.ptp(force))
+    ):
         sign_hint = "" if rise > abs(area) / size else "reverse the sign of one column, or "
         raise ValueError(
             f"{message_prefix}the loop creates energy, area = {area:.3g} J, expected 0 or more: the force "
             f"must lead the motion; {sign_hint}reverse the order of the rows if their time order is reversed"
         )
-    closed = [loop for loop in loops if loop.motion_range >= MIN_COMMON_RANGE_RATIO * loop.longer_range]
+    closed = [
+        loop for loop in loops if loop.motion_range >= MIN_COMMON_OVER_LONGER_MOTION_RANGE * loop.longer_range
+    ]
     if not closed:
         return []
     widest = max(closed, key=lambda loop: loop.motion_range)
@@ -489,6 +498,7 @@ def _check_work(
 
 
 _SIGN_ERROR = "the force decreases as the motion increases; reverse the sign of one column"
+"""Error of loops in which the force falls with the motion."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -534,6 +544,6 @@ def _enclosed_loop(
 
 
 def sort_points(x: Array, y: Array) -> tuple[Array, Array]:
-    """Sort points (n) by x, ascending."""
+    """Sort points (n) with coordinates x, y by x, ascending."""
     order = np.argsort(x, kind="stable")
     return x[order], y[order]

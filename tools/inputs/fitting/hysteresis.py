@@ -29,6 +29,7 @@ from jointfmu.quantity import Array
 from .decay import DecayPoints
 
 ForceFunction = Callable[[Array], Array]
+"""Function of motions (...): forces (...)."""
 _HALF_CYCLE_ANGLES, _HALF_CYCLE_WEIGHTS = np.polynomial.legendre.leggauss(64)
 _HALF_CYCLE_ANGLES = 0.5 * np.pi * (1.0 + _HALF_CYCLE_ANGLES)
 _HALF_CYCLE_WEIGHTS = 0.5 * np.pi * _HALF_CYCLE_WEIGHTS
@@ -39,7 +40,7 @@ _MAX_SECANT_STEPS, _MAX_LOG_DECREMENT = 12, 3.0
 
 @dataclass(frozen=True, slots=True)
 class NonlinearSpring:
-    """Nonlinear elastic spring: force E(u), an odd function of the motion u, and energy V(u), even."""
+    """Nonlinear elastic spring beside the friction: force E(u), odd in the motion u, and energy V(u)."""
 
     force: ForceFunction
     energy: ForceFunction
@@ -133,11 +134,13 @@ class HysteresisLaw:
         """
 
         def dissipated_work_ratio(half_distance: Array) -> Array:
+            """Function G of the half distance: dissipated work over motion."""
             return np.asarray(
                 2.0 * self.friction_work(half_distance) / half_distance + viscous_slope * half_distance
             )
 
         def energy_residual(decrement: Array) -> Array:
+            """Imbalance of the energy for a decrement."""
             first, second = half_distance * np.exp(0.5 * decrement), half_distance * np.exp(-0.5 * decrement)
             dissipated = (
                 dissipated_work_ratio(first)
@@ -196,7 +199,10 @@ _TABLE_POINTS, _MAX_BISECTIONS = 80, 50
 
 @dataclass(frozen=True, slots=True)
 class Oscillator:
-    """Oscillator of one degree of freedom: hysteresis law, mass or inertia, structural damping ratio [1]."""
+    """Mass on a joint, an oscillator of one degree of freedom, whose vibration is compared with a test.
+
+    It consists of the hysteresis law, the mass or inertia, and the structural damping ratio [1].
+    """
 
     hysteresis_law: HysteresisLaw
     inertia: float

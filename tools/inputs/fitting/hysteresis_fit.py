@@ -23,14 +23,16 @@ DAMPING_RATIO_NAME = "damping_ratio"
 MAX_DAMPING_RATIO = 0.3
 """Upper limit of the damping ratio of the structure [1]."""
 UNKNOWN_DAMPING_RATIO = Unknown(DAMPING_RATIO_NAME, "1", 1e-3, 1e-9, MAX_DAMPING_RATIO)
+"""Damping ratio of the structure as an unknown of a fit."""
 FIRST_FIT_TOLERANCE, SECOND_FIT_TOLERANCE = 1e-3, 1e-6
 """Relative change of cost or parameters at which the first and the second fit end [1]."""
 FIRST_FIT_NOISE = 0.01
 """Noise assumed in the first fit, over the size of the data [1]; it only sets the regularisation."""
-MIN_NOISE_RATIO = 1e-9
+MIN_OVER_MAX_NOISE = 1e-9
 """Lower limit of the noise of a group, over the largest noise of all groups [1]; for data without noise."""
 
 LawFunction = Callable[[Mapping[str, float]], HysteresisLaw]
+"""Function {name: value} of the unknowns -> hysteresis law."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +70,10 @@ class MeasurementModel:
         return measured_data.residuals(self.make_oscillator(law, parameter_values), residual_scale)
 
     def make_oscillator(self, law: HysteresisLaw, parameter_values: Mapping[str, float]) -> Oscillator:
-        """Oscillator with a hysteresis law; its damping ratio may be an unknown in `parameter_values`."""
+        """Oscillator (mass on the joint) with a hysteresis law.
+
+        The damping ratio of the structure may be an unknown in `parameter_values`.
+        """
         assert self.inertia is not None
         return Oscillator(law, self.inertia, parameter_values.get(DAMPING_RATIO_NAME, self.damping_ratio))
 
@@ -128,9 +133,11 @@ def fit_measurement(
     data = measurement.data
 
     def residuals(residual_scale: Array) -> Residuals:
+        """Residual function of the unknowns, for standard deviations of the data."""
         return lambda values: model.residuals(data, values, residual_scale)
 
     def apply_exchange(residual_function: Residuals) -> Residuals:
+        """Residual function with the stiffness at rest in place of the exchanged unknown."""
         if exchange is None:
             return residual_function
         current, start = exchange, original[exchange.exchanged_name].start_value
@@ -172,7 +179,9 @@ def fit_measurement(
     square = np.bincount(data.noise_groups, first_residuals[: first_scale.size] ** 2) / np.bincount(
         data.noise_groups
     )
-    scale = first_scale * np.sqrt(np.maximum(square, MIN_NOISE_RATIO**2 * np.max(square)))[data.noise_groups]
+    scale = (
+        first_scale * np.sqrt(np.maximum(square, MIN_OVER_MAX_NOISE**2 * np.max(square)))[data.noise_groups]
+    )
     free = [replace(u, start_value=_clip_to_bounds(u, first.values[u.name])) for u in free]
     solution = solve(
         free,
@@ -235,7 +244,7 @@ def list_misfit_notes(measurement: Measurement, solution: Solution) -> list[str]
 
 
 _CURVE_POINTS = 120
-"""Number of points of a plotted curve of the law."""
+"""Number of points of a plotted curve of the law [1]."""
 
 
 def make_plots(
@@ -292,9 +301,9 @@ def _make_loops_plot(
 
 
 def _make_response_plot(
-    measurement: Measurement, forced_response: ForcedResponse, oscillator: Oscillator
+    measurement: Measurement, forced_response: ForcedResponse, joint_oscillator: Oscillator
 ) -> FitPlot:
-    """Plot of a forced vibration: amplitude over frequency, one curve for each force amplitude."""
+    """Plot of a forced vibration of a mass on the joint: amplitude over frequency, a curve for each force."""
     unit, size = choose_unit(measurement.column_names.si_units[1], forced_response.amplitude)
     lines = []
     for force in np.unique(forced_response.force):
@@ -307,13 +316,13 @@ def _make_response_plot(
         measured = np.interp(
             f, *sort_points(forced_response.frequency[inside], forced_response.amplitude[inside])
         )
-        amplitude = oscillator.response_amplitude(f, np.full_like(f, force), measured)
+        amplitude = joint_oscillator.response_amplitude(f, np.full_like(f, force), measured)
         lines.append(np.append(np.stack([f, amplitude]), [[np.nan], [np.nan]], axis=1))
     line = np.concatenate(lines, axis=1)
     return FitPlot(
         data_x=forced_response.frequency,
         data_y=size * forced_response.amplitude,
-        misfit=100.0 * np.expm1(forced_response.misfit(oscillator)),
+        misfit=100.0 * np.expm1(forced_response.misfit(joint_oscillator)),
         law_curve=(line[0], size * line[1]),
         axis_labels=(
             "frequency [Hz]",
@@ -324,15 +333,15 @@ def _make_response_plot(
 
 
 def _make_decay_plots(
-    measurement: Measurement, free_vibration: FreeVibration, oscillator: Oscillator
+    measurement: Measurement, free_vibration: FreeVibration, joint_oscillator: Oscillator
 ) -> tuple[FitPlot, FitPlot]:
-    """Plots of a free vibration: frequency and damping ratio over amplitude."""
+    """Plots of a free vibration of a mass on the joint: frequency and damping ratio over amplitude."""
     unit, size = choose_unit(measurement.column_names.si_units[1], free_vibration.decay_points.amplitude)
     a = free_vibration.decay_points.amplitude
     grid = np.linspace(a.min(), a.max(), _CURVE_POINTS)
     lines, (frequency, damping) = (
-        oscillator.free_vibration(grid),
-        np.split(free_vibration.misfit(oscillator), 2),
+        joint_oscillator.free_vibration(grid),
+        np.split(free_vibration.misfit(joint_oscillator), 2),
     )
     x = f"amplitude of the {measurement.column_names.motion_column} [{unit}]"
     return (

@@ -62,25 +62,25 @@ class Unknown:
             )
 
     def to_search(self, value: float) -> float:
-        """Logarithm of a value, or value over `scale` [1]."""
+        """Number [1] that the search varies: logarithm of the parameter's value, or value over `scale`."""
         if self.scale:
             return value / self.scale
         return float(np.log(value)) if value > 0.0 else -np.inf
 
     def from_search(self, search_value: float) -> float:
-        """Value of a logarithm, or of a value over `scale`."""
+        """Value of the parameter, for a number that the search varies: logarithm, or value over `scale`."""
         with np.errstate(over="ignore"):
             return search_value * self.scale if self.scale else float(np.exp(search_value))
 
 
 @dataclass(frozen=True, slots=True)
 class Solution:
-    """Least-squares solution and its uncertainty.
+    """Least-squares solution of a fit, and its uncertainty.
 
     values          : {name: value} [SI]
     residuals       : residuals (n) [1] at the solution
     noise           : standard deviation of one residual [1]
-    jacobian        : derivatives (n, k) [1] of the residuals with respect to the logarithms
+    jacobian        : derivatives (n, k) [1] of the residuals with respect to the logarithms of the parameters
     covariance      : covariance (k, k) [1] of the logarithms
     names_at_bound  : names of the parameters on a bound
     refusal_message : error message of the model next to the solution, if the fit ended where the model
@@ -212,7 +212,7 @@ def select_start(
 
 
 def _root_mean_square(residuals: Array) -> float:
-    """Root mean square [1] of residuals (n)."""
+    """Root mean square of residuals (n) [1]."""
     return float(np.sqrt(np.mean(residuals**2)))
 
 
@@ -240,6 +240,7 @@ class _LogarithmicModel:
         return {unknown.name: unknown.from_search(value) for unknown, value in pairs}
 
     def __call__(self, log_values: Array) -> Array:
+        """Residuals and regularisation at logarithms (k) of the parameters."""
         try:
             value = self.residuals(self.values_by_name(log_values))
         except (ValueError, RuntimeError) as error:
@@ -277,7 +278,10 @@ class _LogarithmicModel:
 
 
 def covariance(jacobian: Array, noise: float) -> Array:
-    """Covariance noise^2 (J^T J)^-1 by singular values; directions without effect get a huge variance."""
+    """Covariance noise^2 (J^T J)^-1 of fitted parameters, by singular values of the Jacobian J.
+
+    Directions without effect on the residuals get a huge variance.
+    """
     _, s, rows = np.linalg.svd(jacobian, full_matrices=False)
     s = np.maximum(s, 1e-12 * max(float(s[0]), 1e-300))
     half = rows.T / s
@@ -320,6 +324,7 @@ class UnknownExchange:
         target = float(np.log(parameter_values[self.quantity_label]))
 
         def logarithmic_error(log_value: float) -> float:
+            """Logarithm of the computed over the wanted derived quantity."""
             return (
                 float(np.log(self.derived_quantity({**rest, self.exchanged_name: float(np.exp(log_value))})))
                 - target
@@ -360,6 +365,7 @@ class UnknownExchange:
         """Derivatives (k) [1] of ln(derived quantity) with respect to the logarithms of the k parameters."""
 
         def perturbed_quantity(parameter_name: str, log_step: float) -> float:
+            """Logarithm of the derived quantity with one perturbed parameter."""
             return float(
                 np.log(
                     self.derived_quantity(

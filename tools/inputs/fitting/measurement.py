@@ -18,7 +18,7 @@ from .decay import DecayPoints, analyse_decay
 from .hysteresis import ForcedResponse, FreeVibration
 
 MIN_ROWS = 8
-"""Minimum number of rows of a measurement file."""
+"""Smallest number of rows of a measurement file [1]."""
 RUN_COLUMN = "run"
 """Column with the number of the run, if a file holds several runs."""
 COLUMN_SYNONYMS = {
@@ -31,10 +31,10 @@ COLUMN_SYNONYMS = {
     "damping": ("zeta", "dämpfung", "dämpfungsgrad"),
 }
 """{column: accepted synonyms, in lower case}."""
-WRONG_UNIT_STIFFNESS_RATIO = 50.0
+WRONG_UNIT_MEASURED_OVER_START_STIFFNESS = 50.0
 """Ratio [1] of measured stiffness to stiffness of the start values, or its inverse, from which a wrong unit
 is assumed. Degrees read as radians give 57."""
-MAX_CORRECTED_STIFFNESS_RATIO = 5.0
+MAX_CORRECTED_OVER_START_STIFFNESS = 5.0
 """A wrong unit counts as the explanation if, with the right unit, measured stiffness over stiffness of the
 start values [1] is at most this value, and at least its inverse."""
 
@@ -85,13 +85,18 @@ class ColumnNames:
         is_force_plausible : whether the force at gross slip shows that the unit of the force is right
 
         Raises InputRefusal, with a likely unit error, if the ratio or its inverse reaches
-        WRONG_UNIT_STIFFNESS_RATIO.
+        WRONG_UNIT_MEASURED_OVER_START_STIFFNESS.
         """
-        if 1.0 / WRONG_UNIT_STIFFNESS_RATIO < stiffness_ratio < WRONG_UNIT_STIFFNESS_RATIO:
+        if (
+            1.0 / WRONG_UNIT_MEASURED_OVER_START_STIFFNESS
+            < stiffness_ratio
+            < WRONG_UNIT_MEASURED_OVER_START_STIFFNESS
+        ):
             return
         raise InputRefusal(
             f"{path}: the stiffness is {stiffness_ratio:.3g} times that of {start_file.name}, allowed are "
-            f"{1.0 / WRONG_UNIT_STIFFNESS_RATIO:g} to {WRONG_UNIT_STIFFNESS_RATIO:g}: "
+            f"{1.0 / WRONG_UNIT_MEASURED_OVER_START_STIFFNESS:g} to "
+            f"{WRONG_UNIT_MEASURED_OVER_START_STIFFNESS:g}: "
             f"{self.describe_likely_unit_error(stiffness_ratio, stated_units, is_force_plausible)}; if the "
             "units are right, start from the parameter file of a joint of similar stiffness",
             "params",
@@ -120,7 +125,7 @@ class ColumnNames:
                 unit: abs(np.log(stiffness_ratio * (size / stated) ** power)) for unit, size in units.items()
             }
             unit = min(errors, key=errors.__getitem__)
-            if errors[unit] < np.log(MAX_CORRECTED_STIFFNESS_RATIO):
+            if errors[unit] < np.log(MAX_CORRECTED_OVER_START_STIFFNESS):
                 text = f"the {column} is in {unit}, where the heading says {stated_units[column]}"
                 explanations.append((float(errors[unit]), text))
         if not explanations:

@@ -30,9 +30,9 @@ MAX_PARAMETER_DEVIATION = 0.2
 MAX_INTERVAL_FRACTION = 0.1
 """Standard deviation over the length of the parameter's interval, both in logarithms [1], up to which a
 parameter counts as determined."""
-MIN_EXPONENT_RATIO = 0.01
+MIN_OVER_MAX_EXPONENT = 0.01
 """Exponent over the largest exponent of a combination [1], below which the parameter is not named in it."""
-MIN_SINGULAR_VALUE_RATIO = 1e-5
+MIN_OVER_MAX_SINGULAR_VALUE = 1e-5
 """Singular value over the largest [1], below which it counts as zero: accuracy of the finite differences."""
 
 
@@ -52,6 +52,7 @@ class ParameterCombination:
     scales: Mapping[str, str] = field(default_factory=dict)
 
     def __str__(self) -> str:
+        """Combination as text: prod name^exponent."""
         factors = {
             name: f"exp({name}/{self.scales[name]})" if name in self.scales else name
             for name in self.exponents
@@ -80,13 +81,13 @@ def find_parameter_combinations(solution: Solution) -> list[ParameterCombination
     for value, row in zip(s, rows, strict=True):
         powers = row / limits  # ln of the combination is row . (ln x / limits)
         largest = powers[np.argmax(np.abs(row))]
-        significant = np.abs(row) >= MIN_EXPONENT_RATIO * np.max(np.abs(row))
+        significant = np.abs(row) >= MIN_OVER_MAX_EXPONENT * np.max(np.abs(row))
         exponents = {
             u.name: float(p / largest)
             for u, p, is_named in zip(solution.unknowns, powers, significant, strict=True)
             if is_named
         }
-        has_no_effect = value <= MIN_SINGULAR_VALUE_RATIO * s[0]
+        has_no_effect = value <= MIN_OVER_MAX_SINGULAR_VALUE * s[0]
         deviation = np.inf if has_no_effect else solution.noise / value
         independent.append(
             ParameterCombination(
@@ -119,14 +120,14 @@ def undetermined_names(solution: Solution) -> list[str]:
 MAX_RESIDUAL_CORRELATION = 0.5
 """Correlation of neighbouring residuals [1], above which the misfit is systematic and not noise."""
 
-MAX_LOOP_AREA_RATIO = 2.0
-"""Ratio of measured to fitted area of the widest loop [1], or its inverse, above which a fit is rejected."""
+MAX_MEASURED_OVER_FITTED_LOOP_AREA = 2.0
+"""Measured over fitted area of the widest loop [1], or the inverse, above which a fit is rejected."""
 
 RMS_HEIGHT_PARAMETER = "h"
 """Name of the parameter rms roughness height [m], in laws that have it."""
 
-MAX_RESIDUAL_RATIO = 0.95
-"""Residual of the law over residual of a constant, for held-out data [1], above which a fit is rejected."""
+MAX_LAW_OVER_CONSTANT_RESIDUAL = 0.95
+"""Residual of the law over that of a constant, for held-out data [1], above which a fit is rejected."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -217,17 +218,22 @@ class FitResult:
             return f"the data determine none of {', '.join(names)}, nor a combination of them"
         if "loop_area_law" in self.facts:
             measured, law = self.facts["loop_area"][0], self.facts["loop_area_law"][0]
-            if not measured / MAX_LOOP_AREA_RATIO <= law <= measured * MAX_LOOP_AREA_RATIO:
+            if (
+                not measured / MAX_MEASURED_OVER_FITTED_LOOP_AREA
+                <= law
+                <= measured * MAX_MEASURED_OVER_FITTED_LOOP_AREA
+            ):
                 return (
                     f"the area of the widest loop is {measured:.3g} J measured, {law:.3g} J by the fitted "
-                    f"law; allowed is a factor of {MAX_LOOP_AREA_RATIO:g}"
+                    f"law; allowed is a factor of {MAX_MEASURED_OVER_FITTED_LOOP_AREA:g}"
                 )
         if "held_out" in self.facts:
             law, constant = self.facts["held_out"][0], self.facts["held_out_constant"][0]
-            if law > MAX_RESIDUAL_RATIO * constant:
+            if law > MAX_LAW_OVER_CONSTANT_RESIDUAL * constant:
                 return (
                     f"the fit misses the held-out part of the log by {law:.3g} N.m, a constant friction "
-                    f"torque by {constant:.3g} N.m; allowed is {MAX_RESIDUAL_RATIO:g} times the latter"
+                    f"torque by {constant:.3g} N.m; "
+                    f"allowed is {MAX_LAW_OVER_CONSTANT_RESIDUAL:g} times the latter"
                 )
         return None
 
@@ -307,7 +313,7 @@ def format_deviation(deviation: float) -> str:
 
 
 def _finite_or_none(value: float) -> float | None:
-    """Return the value, or None (JSON null) if it is not finite."""
+    """Finite value as it is; None (JSON null) for infinity and NaN."""
     return float(value) if np.isfinite(value) else None
 
 
@@ -367,7 +373,7 @@ def fitted_parameters(
 
 
 def figure_size(fit_result: FitResult) -> tuple[float, float]:
-    """Width and height of the figure [inch]."""
+    """Width and height [inch] of the figure of a fit."""
     return 3.6 * (1 + len(fit_result.fit_plots)), 5.6
 
 

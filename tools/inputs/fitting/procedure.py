@@ -44,6 +44,7 @@ def make_lazy_fit(module_name: str) -> "Callable[..., FitResult]":
     """Function that loads a module when called, and calls the function `fit` of this module."""
 
     def call_fit(*arguments: object, **options: object) -> "FitResult":
+        """Load the module, and fit."""
         result: FitResult = import_module(module_name).fit(*arguments, **options)
         return result
 

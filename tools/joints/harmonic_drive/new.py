@@ -296,7 +296,7 @@ def _make_joint_with_contact_pair_law(
     friction_numbers: Mapping[str, SourcedNumber],
     drive_name: str,
 ) -> NewJoint:
-    """Make a drive with the law of Hu 2023, fitted to the row."""
+    """Make a drive with the law of Hu 2023, fitted to the numbers of a catalogue row."""
     from .fit import catalogue
 
     kind, ratio = sourced_numbers["rated_torque"].kind, sourced_numbers["ratio"].value

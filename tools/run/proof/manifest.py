@@ -129,7 +129,10 @@ class RelatedFiles:
             raise ValueError(f"{self.fmu}: {path} {error}") from None
 
     def _read_experiments(self, file_element: Element, purpose: str) -> list[Experiment]:
-        """Experiments of a related file; if its type is not supported, one experiment with the reason."""
+        """Experiments in a related file of the FMU.
+
+        A file of an unsupported type gives one experiment that states why it cannot be executed.
+        """
         source, kind = file_element.get("source", ""), file_element.get("type", EXPERIMENTS_TYPE)
         if kind not in (EXPERIMENTS_TYPE, *_OTHER_EXPERIMENT_MIME_TYPES):
             return [

@@ -46,7 +46,7 @@ class LawComparison:
         return abs(self.error) <= REFERENCE_TOLERANCE
 
     def to_json(self) -> dict[str, Any]:
-        """JSON object of the comparison, with the verdict as a word."""
+        """JSON object of the largest deviation of a law's quantity, with the verdict as a word."""
         return asdict(self) | {
             "error": self.error if np.isfinite(self.error) else None,
             "computed": self.computed if np.isfinite(self.computed) else None,

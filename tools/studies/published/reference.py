@@ -151,7 +151,7 @@ def compute_trivial_guesses(points: Sequence[PublishedPoint]) -> dict[str, float
         return evaluate_guess(point, point.guess, (*requesting_ids, point_id))
 
     def evaluate_guess(point: PublishedPoint, rule: Guess, requesting_ids: tuple[str, ...]) -> float:
-        """Trivial guess of a point by a rule."""
+        """Trivial guess of a published number by a rule, for example the power law through two points."""
         a, *more = (find_value(name, requesting_ids) for name in rule.points)
         if rule.rule in _POWER_LAW_GUESS_RULES:
             x, x_a, *others = (p.where[rule.over] for p in (point, *(known[name] for name in rule.points)))

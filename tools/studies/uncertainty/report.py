@@ -49,7 +49,7 @@ def format_bands_csv(uncertainty_problem: UncertaintyProblem, bands: Bands) -> s
     return columns.format_table(heads, values)
 
 
-def as_json(
+def study_to_json(
     uncertainty_problem: UncertaintyProblem, bands: Bands, sensitivity: Sensitivity | None
 ) -> dict[str, object]:
     """Results of a study as one JSON object: bands, refused samples and Sobol' indices."""

@@ -22,7 +22,7 @@ SIMULATION_TOLERANCE = 1e-7
 
 
 class CompiledSystem(LoadedLibrary):
-    """A system that its compiled library simulates. Parameters, start values and inputs are set in each run.
+    """System that its compiled library simulates. Parameters, start values and inputs are set in each run.
 
     The library does not depend on the values of exposed parameters. After the first time, zig finds it in its
     cache.
@@ -49,6 +49,7 @@ class CompiledSystem(LoadedLibrary):
         self._start_values |= {v.name: parameters.start_value(v.name) for v in model.inputs}
 
     def _declare_functions(self) -> None:
+        """Declare argument types of the C function that simulates the system."""
         super()._declare_functions()
         lib, pointer, size = self._library, ctypes.c_void_p, ctypes.c_size_t
         lib.fmi3Reset.argtypes = lib.fmi3ExitInitializationMode.argtypes = [pointer]

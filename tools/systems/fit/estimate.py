@@ -20,8 +20,8 @@ from jointfmu.quantity import Array
 from ...common import plots
 from ...inputs.fitting.least_squares import Solution, Unknown, covariance, solve
 from ...inputs.fitting.outcome import (
+    MAX_LAW_OVER_CONSTANT_RESIDUAL,
     MAX_RESIDUAL_CORRELATION,
-    MAX_RESIDUAL_RATIO,
     FitPlot,
     FitResult,
     fitted_parameters,
@@ -33,11 +33,11 @@ from .correlated_residuals import whiten_jacobian
 from .record import Record, list_similar_names, read_record
 
 FITTED_SHARES = (0.125, 0.25, 0.5)
-"""Shares of the fitted rows [1] that are fitted first, one after the other."""
+"""Shares of the fitted rows of the record [1] that are fitted first, one after the other."""
 SHARE_TOLERANCE, TOLERANCE = 1e-3, 1e-7
 """Relative change of cost or parameters at which the fit of such a share, and the whole fit, end [1]."""
 MAX_SHARE_CHANGE = 1.0
-"""Largest change of the logarithm of a parameter [1] in the fit of such a share."""
+"""Largest change of the logarithm of a parameter [1] in the fit of one of the FITTED_SHARES."""
 DIFFERENCE_STEP_LIMITS = 1e-5, 1e-2
 """Smallest and largest step of the central differences, in the logarithm of a parameter [1]."""
 DIFFERENCE_EFFECT = 5.0
@@ -48,10 +48,10 @@ steps of the simulation change. Larger ones shift an oscillation by more than a 
 """
 NOISE_TOLERANCE, MAX_NOISE_UPDATES = 0.02, 5
 """Relative change of the noise of the columns at which the fit ends, largest number of repeats."""
-MIN_NOISE_RATIO = 1e-6
+MIN_NOISE_OVER_SCATTER = 1e-6
 """Smallest standard deviation of a column over that of its values [1]: for a record without noise."""
-MAX_START_RATIO = 0.1
-"""First measured value of a state over the range of its column [1], up to which it counts as zero."""
+MAX_START_OVER_COLUMN_RANGE = 0.1
+"""First measured value of a state over the range of its column [1], up to which the state starts at zero."""
 MAX_HOLD_OUT = 0.9
 """Largest share of the record that may be held out [1]."""
 NO_EFFECT_STEP, MIN_EFFECT = 1e-3, 1e-10
@@ -97,7 +97,10 @@ def fit_system(
 def _make_unknowns(
     system: System, model: Model, start_file: ParameterFile, record: Record, free: Sequence[str]
 ) -> list[Unknown]:
-    """Make the unknowns. Raises ValueError for a name that the system lacks or that cannot be fitted."""
+    """Make the unknowns of the fit.
+
+    Raises ValueError for a name that the system lacks or that cannot be fitted.
+    """
     states = {v.name: v for v in model.outputs[: model.state_count]}
     numbers = {
         name: item
@@ -139,7 +142,11 @@ def _check_start(record: Record, model: Model, free: Sequence[str]) -> None:
     """Raise ValueError if a measured state does not start at zero, and its start value is not fitted."""
     for v in model.outputs[: model.state_count]:
         column = record.outputs.get(v.name)
-        if column is not None and v.name not in free and abs(column[0]) > MAX_START_RATIO * np.ptp(column):
+        if (
+            column is not None
+            and v.name not in free
+            and abs(column[0]) > MAX_START_OVER_COLUMN_RANGE * np.ptp(column)
+        ):
             raise ValueError(
                 f"{record.path}: {v.name} starts at {column[0]:.4g} {v.unit}, the system at 0; "
                 f"add {v.name} to the free parameters to fit its start value"
@@ -148,7 +155,7 @@ def _check_start(record: Record, model: Model, free: Sequence[str]) -> None:
 
 @dataclass(frozen=True)
 class _Estimation:
-    """Simulations of a system beside its record.
+    """Simulations of a system, to be compared with a measured record.
 
     fitted_count : number of rows that are fitted
     """
@@ -158,20 +165,20 @@ class _Estimation:
     fitted_count: int
 
     def simulate(self, values: Mapping[str, float], row_count: int) -> Array:
-        """Simulated columns (rows, columns) [SI] of the first rows."""
+        """Simulated columns (rows, columns) [SI] of the first rows of the record."""
         inputs = {name: column[:row_count] for name, column in self.record.inputs.items()}
         return self.compiled.simulate(values, self.record.time[:row_count], inputs, [*self.record.outputs])
 
     def measured(self, row_count: int) -> Array:
-        """Measured columns (rows, columns) [SI] of the first rows."""
+        """Measured columns (rows, columns) [SI] of the first rows of the record."""
         return np.column_stack([column[:row_count] for column in self.record.outputs.values()])
 
     def misfit(self, values: Mapping[str, float], row_count: int) -> Array:
-        """Simulated minus measured columns (rows, columns) [SI]."""
+        """Simulated minus measured columns (rows, columns) [SI] of the record."""
         return self.simulate(values, row_count) - self.measured(row_count)
 
     def check_effects(self, unknowns: Sequence[Unknown]) -> None:
-        """Raise ValueError for a parameter that changes no compared column."""
+        """Raise ValueError for a fitted parameter that changes no compared column."""
         start = {u.name: u.start_value for u in unknowns}
         reference = self.simulate(start, self.fitted_count)
         scale = np.std(self.measured(self.fitted_count), axis=0)
@@ -191,12 +198,13 @@ class _Estimation:
         The residuals of the solution are those of all columns, one after the other.
         """
         measured = self.measured(self.fitted_count)
-        smallest, current = MIN_NOISE_RATIO * np.std(measured, axis=0), list(unknowns)
+        smallest, current = MIN_NOISE_OVER_SCATTER * np.std(measured, axis=0), list(unknowns)
         noise = np.maximum(np.sqrt(np.mean(np.diff(measured, 2, axis=0) ** 2, axis=0) / 6.0), smallest)
 
         steps = np.full(len(current), DIFFERENCE_STEP_LIMITS[1])
 
         def solve_rows(searched: Sequence[Unknown], row_count: int, tolerance: float) -> Solution:
+            """Solution of the fit to the first rows of the record."""
             solution = solve(
                 searched,
                 lambda values: (self.misfit(values, row_count) / noise).T.ravel(),
@@ -223,7 +231,7 @@ class _Estimation:
 
 
 def _limit_change(unknown: Unknown) -> Unknown:
-    """Unknown with bounds at MAX_SHARE_CHANGE from its start value."""
+    """Unknown of the fit with bounds at MAX_SHARE_CHANGE from its start value."""
     middle = unknown.to_search(unknown.start_value)
     low, high = (unknown.from_search(middle + d) for d in (-MAX_SHARE_CHANGE, MAX_SHARE_CHANGE))
     bounds = max(unknown.lower_bound, low), min(unknown.upper_bound, high)
@@ -261,7 +269,7 @@ def _make_result(
         residuals = misfit[:count, k]
         rms, mean = _root_mean_square(residuals), float(np.mean(column[:count]))
         facts[f"residual.{name}"] = (rms, units[name], "rms of measured minus fitted values")
-        is_missed.append(rms > MAX_RESIDUAL_RATIO * float(np.std(column[:count])))
+        is_missed.append(rms > MAX_LAW_OVER_CONSTANT_RESIDUAL * float(np.std(column[:count])))
         power = max(float(residuals @ residuals), np.finfo(float).tiny)
         correlation = float(residuals[1:] @ residuals[:-1]) / power
         if correlation > MAX_RESIDUAL_CORRELATION:
@@ -279,7 +287,7 @@ def _make_result(
                 units[name],
                 "the same, for the mean of the fitted part",
             )
-            is_held_out_missed.append(error > MAX_RESIDUAL_RATIO * trivial)
+            is_held_out_missed.append(error > MAX_LAW_OVER_CONSTANT_RESIDUAL * trivial)
     doubt = None
     if all(is_missed):
         doubt = "the fitted system misses every measured column by as much as the mean of the column does"

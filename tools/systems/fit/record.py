@@ -14,7 +14,7 @@ from ...common import columns
 from ...common.names import find_similar_names
 
 MIN_ROWS = 8
-"""Smallest number of rows of a record."""
+"""Smallest number of rows of a record [1]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +36,7 @@ class Record:
 
 
 def read_record(path: Path, model: Model, stated_headings: Sequence[str] = ()) -> Record:
-    """Read a record.
+    """Read a measured record of a system from a CSV file.
 
     model           : of the system
     stated_headings : `NAME=HEADING` or `NAME=HEADING [UNIT]`, for columns with other headings

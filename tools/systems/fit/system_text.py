@@ -10,6 +10,7 @@ from jointfmu.files.text import format_toml_string
 from jointfmu.parameters import ParameterFile, read_document
 
 _BARE_KEY_PATTERN = re.compile(r"[\w-]+", re.ASCII)
+"""Pattern of a TOML key that needs no quotes."""
 
 
 def format_fitted_system(
@@ -40,7 +41,7 @@ def format_fitted_system(
 
 
 def check_sections(path: Path, names: Iterable[str]) -> dict[str, Any]:
-    """Document of a system file, if it has a section for each COMPONENT.PARAMETER.
+    """Read the document of a system file, which must have a section for each COMPONENT.PARAMETER.
 
     Raises ValueError for a component without its own section: those that a section [arm] makes.
     """
@@ -65,7 +66,7 @@ def _move_paths(section: Any, folder: Path, new_folder: Path) -> None:
 
 
 def _format_document(document: Mapping[str, Any]) -> str:
-    """Text of a document: values, then a section for each table, whose items have one line each."""
+    """TOML text of a document: values, then a section for each table, whose items have one line each."""
     values = {key: value for key, value in document.items() if not isinstance(value, dict)}
     lines = [f"{_format_key(key)} = {_format_value(value)}" for key, value in values.items()]
     for name, section in document.items():
@@ -76,6 +77,7 @@ def _format_document(document: Mapping[str, Any]) -> str:
 
 
 def _format_key(key: str) -> str:
+    """TOML text of a key, with quotes if it needs them."""
     return key if _BARE_KEY_PATTERN.fullmatch(key) else format_toml_string(key)
 
 
