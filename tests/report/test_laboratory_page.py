@@ -95,6 +95,17 @@ def test_each_joint_is_drawn_without_errors(shown: Browser, name: str) -> None:
 
 
 @needed
+@pytest.mark.parametrize("name", MODELS)
+def test_the_first_loop_starts_without_a_jump_and_loads_the_joint(shown: Browser, name: str) -> None:
+    choose(shown, name)
+    points, answer = shown.run("laboratory.then(({ path }) => [path.points, path.trace.force])")
+    (first, *_), (second, *_) = points[:2]
+    assert first == pytest.approx(second - first)
+    assert answer[0] == 0.0
+    assert any(answer)
+
+
+@needed
 def test_everything_has_a_name_and_nothing_is_wider_than_a_phone(shown: Browser) -> None:
     for name in MODELS:
         choose(shown, name)

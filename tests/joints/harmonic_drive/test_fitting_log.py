@@ -390,6 +390,7 @@ def test_a_controller_that_states_motor_torques_at_the_joint(tmp_path):
     [
         (["LOG", "LOG"], "has the samples of"),
         (["LOG", "--torque-constant", "0.021"], "motor torque times ratio is 0.103 times link_torque"),
+        (["LOG", "--torque-constant", "2.1"], "; check --torque-constant = 2.1 N.m/A"),
         (["LOG", "--torque-constant", "-0.21"], "reverse the sign of link_torque, or of the motor's torque"),
     ],
 )

@@ -182,7 +182,8 @@ equation
 <h4>How far to trust it</h4>
 <ul>
 <li><b>Not validated as a stiffness.</b> No stiffness of this mesh is published, and the paper prints no numbers of its curves. Only the paper's claims on the flanks are compared, with <code>GearContact</code>.</li>
-<li><b>Estimates.</b> <code>A_0</code>, <code>K_tooth</code>, <code>backlash</code>, <code>contact_ratio</code>, <code>engagement</code> and <code>d</code> are not published; the wheels are taken as spur wheels without profile shift. At usual loads <code>K_tooth</code> determines the stiffness; the flanks determine the first contact.</li>
+<li><b>Estimates.</b> <code>A_0</code>, <code>K_tooth</code>, <code>backlash</code>, <code>contact_ratio</code>, <code>engagement</code> and <code>d</code> are not published; the wheels are taken as spur wheels without profile shift.</li>
+<li><b>Formula of the teeth.</b> At usual loads <code>K_tooth</code> determines the stiffness; the flanks determine the first contact. Published formulas of the mean mesh stiffness differ: for two spur wheels of module 2 mm with 62 teeth, an open rotor-dynamics code has 13 % less than ISO 6336-1.</li>
 <li><b>One stiffness of the teeth.</b> In reality the stiffness of a pair varies along the line of action by about ten per cent; in this model only the number of pairs varies. All pairs share the load equally.</li>
 <li><b>One phase for both flanks.</b> When the load changes its side, the real cycle of the back flanks is shifted.</li>
 <li><b>Closing contact.</b> Below 21 kPa on the flanks (2 N per pair with the default parameters) the law gives almost no stiffness; the curve continues smoothly to zero and departs from the law.</li>

@@ -300,7 +300,8 @@ def make_log(
     else:
         table.require_column("dq", COLUMN_UNITS)
         samples = make_steady_speed_samples(have, torque)
-        _check_samples(path, samples, drive)
+        _check_speeds(path, samples, drive)
+    _check_motor_torque(path, samples, drive, torque_constant)
     return MeasuredLog(path, samples, has_motor_torque)
 
 
@@ -369,7 +370,7 @@ def _read_dynamic_log(
     samples = make_dynamic_samples(even, step, columns_by_name, drive)
     if "dq" in columns_by_name and "q" in columns_by_name:
         _check_speed_column(log_columns, filter_values(columns_by_name["q"], step, 1), samples.dq)
-    _check_samples(log_columns.path, samples, drive)
+    _check_speeds(log_columns.path, samples, drive)
     return samples.select_samples(np.arange(width // 2, even.size - width // 2, width))
 
 
@@ -418,8 +419,8 @@ def _check_speed_column(log_columns: columns.Columns, derivative_of_q: Array, jo
         )
 
 
-def _check_samples(path: Path, samples: Samples, drive: DriveParameters) -> None:
-    """Check speeds and torques of a log. Raises ValueError if nothing moves or a value is implausible."""
+def _check_speeds(path: Path, samples: Samples, drive: DriveParameters) -> None:
+    """Check the speeds of a log. Raises ValueError if nothing moves or a speed is implausible."""
     ratio = abs(drive.ratio)
     fastest = ratio * float(np.max(np.abs(samples.dq)))
     if fastest > MAX_MOTOR_SPEED:
@@ -431,10 +432,18 @@ def _check_samples(path: Path, samples: Samples, drive: DriveParameters) -> None
         raise ValueError(
             f"{path}: has no motion; expected speeds of the joint above {MIN_MOTOR_SPEED / ratio:.2g} rad/s"
         )
-    limit = MAX_MOTOR_OVER_DRIVE_TORQUE * float(drive.max_table_torque) / ratio
+
+
+def _check_motor_torque(
+    path: Path, samples: Samples, drive: DriveParameters, torque_constant: float | None
+) -> None:
+    """Check the motor torque of a log. Raises ValueError if it is implausible for the drive."""
+    limit = MAX_MOTOR_OVER_DRIVE_TORQUE * float(drive.max_table_torque) / abs(drive.ratio)
     largest = float(np.max(np.abs(samples.motor_torque)))
     if largest > limit:
+        advice = "expected that of the motor, not of the joint (--torque-at joint), of a drive as stated"
+        if torque_constant is not None:
+            advice = f"check --torque-constant = {torque_constant:g} N.m/A, and the size of the drive"
         raise ValueError(
-            f"{path}: a motor torque of {largest:.4g} N.m is outside [-{limit:.4g}, {limit:.4g}] N.m; "
-            "expected that of the motor, not of the joint (--torque-at joint), of a drive as stated"
+            f"{path}: a motor torque of {largest:.4g} N.m is outside [-{limit:.4g}, {limit:.4g}] N.m; {advice}"
         )
