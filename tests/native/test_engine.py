@@ -6,12 +6,13 @@ import pickle
 import numpy as np
 import pytest
 from clients import needs
+from joint_cases import NAMES, random_inputs
 from jointfmu_tools.run import engine
 from jointfmu_tools.run.engine import CompiledJoint, PythonJoint, VariableJoint, open_joint
 from surroundings import environment, missing_package, temporary_folder
 
 import jointfmu
-from jointfmu.joints import KINDS
+from jointfmu.joints import KINDS, MODELS
 from jointfmu.parameters import load_default
 
 LAWS = [(name, law, model.name) for name, kind in KINDS.items() for law in kind.laws for model in kind.models]
@@ -59,6 +60,16 @@ def test_the_compiled_joint_gives_the_numbers_of_the_python_law(kind, law, fmu):
     path = a_path(python, 2)
     found = compiled.follow(path)
     assert largest_difference(found, python.follow(path)) <= SAME
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_any_motion_has_the_numbers_of_the_python_law(name):
+    """All inputs change in each step: contacts open, close and slip in all directions."""
+    file, rows = load_default(MODELS[name].joint), random_inputs(name, 24, seed=7)
+    model = MODELS[name].with_parameters(file.joint, file.values)
+    path = {n: np.array([row[n] for row in rows]) for n in rows[0]}
+    found, expected = (joint(model, file).follow(path) for joint in (CompiledJoint, PythonJoint))
+    assert largest_difference(found, expected) <= SAME
 
 
 def test_a_path_begins_in_the_virgin_state():

@@ -24,7 +24,6 @@ import jointfmu
 from jointfmu.parameters import read_document
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "fitting.md"
-FREE = [*LINEAR]
 HEAD = "time [s],motor.tau_a [N.m],link.phi [deg]\n"
 ROWS = "".join(f"{0.1 * k:g},0.1,{k % 2}\n" for k in range(9))
 

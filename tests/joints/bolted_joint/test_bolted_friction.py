@@ -9,6 +9,7 @@ from scipy.optimize import brentq
 
 from jointfmu.joints import MODELS
 from jointfmu.joints.bolted_joint.contact import force_transfer
+from jointfmu.joints.bolted_joint.friction import directional_stiffness
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import preload_pressure
 from jointfmu.parameters import load_default
@@ -356,6 +357,34 @@ def test_the_stiffness_matrix_is_symmetric_and_holds_the_outputs(preload, moment
     named = [float(out[f"K_{name}"]) for name in ("xx", "yy", "zz", "rx", "ry", "rz")]
     np.testing.assert_allclose(np.diag(K), named, rtol=1e-5)
     assert np.all(np.linalg.eigvalsh(K / size) > 0.0)
+
+
+@pytest.mark.parametrize(
+    ("motion", "rtol"), [((1, 1, 0, 0, 0, 0), (2e-3, 2e-3, 7e-3)), ((0, 0, 0.3, 0, 0, 3), (None, None, 0.02))]
+)
+@pytest.mark.parametrize("seed", range(4))
+def test_stiffness_after_slip_is_that_of_the_softer_direction(spring, seed, motion, rtol):
+    """Going on, more sliders slip than going back. Around its centre a patch turns alike both ways."""
+    path, memory = polygon(np.random.default_rng(seed), 2, 3)[:-2] * np.array(motion), None
+    for place in path:
+        out, memory = MODEL.advance(spring, at(place), spring.initial_history() if memory is None else memory)
+
+    def moved(axis, step):
+        return six(MODEL.advance(spring, at(path[-1] + step * np.eye(6)[axis]), memory)[0])[axis]
+
+    cases = zip((0, 1, 5), ("K_xx", "K_yy", "K_rz"), (1e-12, 1e-12, 1e-11), rtol, strict=True)
+    for axis, name, h, within in cases:
+        if within:
+            softer = min((moved(axis, 0.0) - moved(axis, step)) / step for step in (h, -h))
+            assert out[name] == pytest.approx(softer, rel=within), name
+
+
+def test_stiffness_in_a_direction_is_the_quadratic_form_of_the_tangent():
+    rng = np.random.default_rng(5)
+    tangent, direction = rng.normal(size=(7, 6)), rng.normal(size=(7, 3))
+    matrices = tangent[:, [[0, 1, 3], [1, 2, 4], [3, 4, 5]]]
+    expected = np.einsum("mi,mij,mj->m", direction, matrices, direction)
+    np.testing.assert_allclose(directional_stiffness(tangent, direction), expected, rtol=1e-12)
 
 
 def test_opening_and_moment_couple_the_directions(spring):
