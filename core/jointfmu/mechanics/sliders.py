@@ -230,7 +230,10 @@ class Foundation:
 
         mu [p(delta) - p(delta - kappa u/mu)], the sum over all springs, without discretisation by sliders.
         """
-        load, slipped_load, _ = self.slipped_pressure(approach, tangential_displacement)
+        load, slipped_load = (
+            self.pressure_curve.derivatives(x, 0)[0]
+            for x in self._slip_range(approach, tangential_displacement)
+        )
         return np.asarray(self.friction_coefficient * (load - slipped_load))
 
     def slipped_pressure(
@@ -244,11 +247,15 @@ class Foundation:
         approach                : delta (...) [m]
         tangential_displacement : u (...) >= 0 [m] from the virgin state
         """
-        upper = np.asarray(approach, dtype=np.float64)
-        displacement = np.asarray(tangential_displacement, dtype=np.float64)
-        lower = np.asarray(upper - displacement / (self.friction_coefficient / self.stiffness_ratio))
+        upper, lower = self._slip_range(approach, tangential_displacement)
         load, slipped_load = (self.pressure_curve.derivatives(x, 0)[0] for x in (upper, lower))
         return load, slipped_load, self.pressure_curve.energy(upper) - self.pressure_curve.energy(lower)
+
+    def _slip_range(self, approach: ArrayLike, tangential_displacement: ArrayLike) -> tuple[Array, Array]:
+        """Approach delta (...) [m], and the lower end delta - kappa u/mu (...) [m] of slipped springs."""
+        upper = np.asarray(approach, dtype=np.float64)
+        displacement = np.asarray(tangential_displacement, dtype=np.float64)
+        return upper, np.asarray(upper - displacement / (self.friction_coefficient / self.stiffness_ratio))
 
     def cycle_energies(self, approach: ArrayLike, amplitude: ArrayLike) -> tuple[Array, Array]:
         """Energy loss of cycles with amplitudes (...) [m], and elastic energy at their ends (...) [J/m2].
