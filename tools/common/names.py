@@ -20,10 +20,10 @@ def find_similar_names(name: str, known_names: Iterable[str], count: int = 3) ->
     compared = r"[\W_]" if joined else "[^a-z]"
 
     def distance(known: str) -> tuple[float, ...]:
-        texts = (re.sub(compared, "", text) for text in (known.lower(), wanted))
-        similarity = SequenceMatcher(None, *texts).ratio()
-        numbers = ([float(n) for n in re.findall(r"[1-9]\d*", text)] for text in (known, wanted))
-        ratios = () if joined else [abs(math.log(a / b)) for a, b in zip(*numbers, strict=False)]
+        a, b = (re.sub(compared, "", text) for text in (known.lower(), wanted))
+        similarity = SequenceMatcher(None, a, b).ratio()
+        numbers = ([float(digits) for digits in re.findall(r"[1-9]\d*", text)] for text in (known, wanted))
+        ratios = () if joined else [abs(math.log(m / n)) for m, n in zip(*numbers, strict=False)]
         return -similarity, *ratios
 
     similar = [(d, known) for known in known_names if (d := distance(known))[0] <= -MIN_SIMILARITY]
