@@ -133,6 +133,18 @@ def test_a_notebook_shows_each_figure_once(tmp_path: Path) -> None:
     assert {cell.source: count_pictures(cell) for cell in notebook.cells} == FIGURE_CELLS
 
 
+@pytest.mark.slow
+def test_a_page_of_a_failed_example_states_the_error(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    (pages := tmp_path / "pages").mkdir()
+    script = tmp_path / "broken.py"
+    script.write_text('# %% [markdown]\n# # Title\n\n# %%\nraise ValueError("gmsh is missing")\n')
+    notebooks().write_page(script, pages, None)
+    assert "because the script failed on this machine: gmsh is missing*" in (pages / "broken.md").read_text()
+    assert "broken.py: ValueError: gmsh is missing" in capfd.readouterr().err
+
+
 def test_a_script_shows_each_figure_once(monkeypatch: pytest.MonkeyPatch) -> None:
     import matplotlib.pyplot as plt
 
