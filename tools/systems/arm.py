@@ -47,8 +47,8 @@ from jointfmu.quantity import (
 from .system_joint import load_joint_file
 
 UNCOUPLED_NOTE = (
-    "The axes are not coupled: tip errors are right within 1 %, but the oscillation of the shipped arm after its "
-    "motion is too small by factors up to 60 (wrist). The one FMU of the system has the coupled dynamics."
+    "The axes are not coupled: tip errors are right within 1 %, but the oscillation of the shipped arm after "
+    "its motion is too small by factors up to 60 (wrist). The one FMU of the system has the coupled dynamics."
 )
 """Size of the error of separate inertias, for files that have them."""
 AXIS_VECTORS: Mapping[str, Array] = {"y": np.array([0.0, 1.0, 0.0]), "z": np.array([0.0, 0.0, 1.0])}

@@ -78,9 +78,7 @@ class ArmLinks:
         file = ParameterFile(
             "arm", "arm", values, dict.fromkeys(names, "derived"), dict.fromkeys(names, "section [arm]")
         )
-        sources = {
-            f"{name}_link.tau": InputSource(f"{name}_drive", "tau2") for name in self.arm.axis_names
-        }
+        sources = {f"{name}_link.tau": InputSource(f"{name}_drive", "tau2") for name in self.arm.axis_names}
         return SystemComponent("", self._make_model(), file, sources, {})
 
     def _make_model(self) -> Model:
@@ -116,7 +114,9 @@ class ArmLinks:
     def evaluate_outputs(self, parameters: Any, values: Mapping[str, Number]) -> dict[str, Number]:
         """All outputs, for a parameter set and the values of inputs and states."""
         outputs = dict(values)
-        accelerations = self._compute_motion(parameters, values, self._list_values(values, "tau")).accelerations
+        accelerations = self._compute_motion(
+            parameters, values, self._list_values(values, "tau")
+        ).accelerations
         for name, acceleration in zip(self.arm.axis_names, accelerations, strict=True):
             outputs[f"{name}_link.a"] = acceleration
         positions, speeds = self._list_values(values, "phi"), self._list_values(values, "w")
