@@ -1,6 +1,6 @@
 """Joints in MuJoCo: the plugin over the FMU called from Python, and elastic arms over the rigid arm.
 
-    python benchmarks/mujoco_joints.py --run plugin|throughput [--quick] [--hysteresis ARCMIN]
+    python benchmarks/mujoco_joints.py --run plugin|throughput|robot [--quick] [--hysteresis ARCMIN]
 
 plugin     : a row of links on locked motors, each driven by a sine; the steps run in C (`mj_step` with
              `nstep`). MuJoCo's Euler scheme evaluates each joint twice a step: for the torque, and to accept
@@ -11,6 +11,8 @@ throughput : 4096 environments of a six-axis arm that fall from random poses, in
                     joints in plain
              MJCF, with and without this friction; elastic joints by the plugin, with friction. Damping is
              explicit (`eulerdamp` is off) except where stated. Shortest processor times of rounds in turn.
+robot      : the equations of a six-axis arm as one FMU, all effects of its drives on, motors driven by sines;
+             time of its initialization and of its steps, beside MuJoCo's steps of the plain elastic model
 """
 
 import sys
@@ -22,13 +24,14 @@ from time import perf_counter, process_time
 import fmpy
 import mujoco
 import numpy as np
-from harness import ROOT, read_options, require, verdict
+from harness import ROOT, fastest, read_options, require, verdict
 from jointfmu_fmu_src.building import build_fmus
 from jointfmu_tools.api import drive
 from jointfmu_tools.exchange.mujoco import plugin
-from jointfmu_tools.exchange.robots import elastic, plugin_robot
+from jointfmu_tools.exchange.robots import elastic, plugin_robot, robot_system
 from jointfmu_tools.joints.harmonic_drive.transmission import make_transmission
 from jointfmu_tools.run.host import Instance
+from jointfmu_tools.systems.fit.compiled_system import CompiledSystem
 from mujoco import rollout
 
 # plugin
@@ -239,8 +242,60 @@ def print_throughput(hysteresis: float | None, quick: bool) -> None:
         )
 
 
+# robot
+
+DURATION, COMMUNICATION_STEP, PAYLOAD = 2.0, 1e-3, 3.0
+"""Simulated time [s], communication step of the FMU [s], mass at the tip [kg]."""
+ROBOT_EFFECTS = {"hysteresis_loss": 2.9e-4, "lost_motion": 2.9e-4, "friction_stribeck": 0.01, "error_2": 1e-4}
+"""Parameters of all drives beyond those of the catalogue, which has friction and load loss."""
+DEFAULT_TOLERANCE = 1e-5
+"""Tolerance of the FMU if the host states none [1]."""
+MIN_REAL_TIME_RATIO, MAX_START_TIME = 20.0, 5e-3
+"""Targets: simulated time over processor time, and time to initialize [s]."""
+
+
+def print_robot(quick: bool) -> None:
+    """Print the processor time of the equations of a robot's FMU, over that of the plain MuJoCo model."""
+    spec = elastic.read_robot(ROBOT)
+    spec.option.timestep = STEP
+    files = {f"joint{i}": drive(size).file for i, size in enumerate(SIZES, 1)}
+    axes = elastic.make_axes(spec, {joint: make_transmission(file) for joint, file in files.items()})
+    rigid, plain = spec.compile(), elastic.add_drives(spec, axes).compile()
+    pose, tip = elastic.joint_positions(rigid, {"joint2": "0.7", "joint3": "0.8"}), rigid.body("flange").id
+    arm = robot_system.read_arm(rigid, axes, files, pose, PAYLOAD, tip)
+    system = CompiledSystem(robot_system.make_robot_system(arm, "robot", "robot", PAYLOAD))
+    time = COMMUNICATION_STEP * np.arange(round(DURATION / COMMUNICATION_STEP) + 1)
+    torques = {
+        f"{joint.name}.tau_motor": joint.motor_load
+        + 0.3 * axis.drive.rated_torque / axis.drive.ratio * np.sin(2.0 * np.pi * time)
+        for joint, axis in zip(arm.joints, axes, strict=True)
+    }
+    values = {f"{axis.joint}.drive.{key}": x for axis in axes for key, x in ROBOT_EFFECTS.items()}
+    outputs, repeats = ["tip.x", "tip.y", "tip.z"], 1 if quick else 10
+    data = mujoco.MjData(plain)
+
+    def run(points: int) -> np.ndarray:
+        inputs = {name: torque[:points] for name, torque in torques.items()}
+        return system.simulate(values, time[:points], inputs, outputs, DEFAULT_TOLERANCE)
+
+    def run_mujoco() -> None:
+        mujoco.mj_resetData(plain, data)
+        mujoco.mj_step(plain, data, round(DURATION / STEP))
+
+    _, start = fastest(lambda: run(1), repeats, process_time)
+    _, taken = fastest(lambda: run(time.size), repeats, process_time)
+    _, other = fastest(run_mujoco, repeats, process_time)
+    ratio = DURATION / taken
+    print(f"robot, start: {1e3 * start:.2f} ms, of {1e3 * MAX_START_TIME:g} {verdict(start, MAX_START_TIME)}")
+    print(
+        f"robot, communication step {1e3 * COMMUNICATION_STEP:g} ms: {ratio:.1f} x real time, "
+        f"of {MIN_REAL_TIME_RATIO:g} {verdict(-ratio, -MIN_REAL_TIME_RATIO)}"
+    )
+    print(f"plain MuJoCo model, step {1e3 * STEP:g} ms: {DURATION / other:.1f} x real time")
+
+
 def main() -> None:
-    """Run one of the two benchmarks: MuJoCo accepts only one plugin of a name in a process."""
+    """Run one of the benchmarks: MuJoCo accepts only one plugin of a name in a process."""
     options = read_options(
         __doc__,
         hysteresis={
@@ -248,11 +303,13 @@ def main() -> None:
             "metavar": "ARCMIN",
             "help": "throughput: hysteresis of each drive (none)",
         },
-        run={"choices": ("plugin", "throughput"), "required": True},
+        run={"choices": ("plugin", "throughput", "robot"), "required": True},
     )
     require(sys.platform != "win32", "Linux or macOS")
     if options.run == "plugin":
         print_plugin(options.quick)
+    elif options.run == "robot":
+        print_robot(options.quick)
     else:
         print_throughput(options.hysteresis, options.quick)
 

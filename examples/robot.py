@@ -2,8 +2,8 @@
 """
 # A robot with six drives
 
-A robot with six drives of the catalogue: load, wind-up, and the error of the tip with the drives and with
-constant springs.
+A robot with six drives of the catalogue and coupled links: load, wind-up, and the error of the tip, with the
+drives and with constant springs.
 """
 
 # %%
@@ -39,7 +39,7 @@ def tip(angles):
 subprocess.run([sys.executable, "-m", "jointfmu", "system", "six_axis_robot", "--csv=robot.csv"], check=True)
 run = np.genfromtxt("robot.csv", delimiter=",", names=True, deletechars="")[::20]
 motors = [-run[f"{name}_motor.phi_[rad]"] / 100.0 for name in ARM]  # against the links
-links = {"drives as FMUs": [run[f"{name}_link.phi_[rad]"] for name in ARM]}
+links = {"drives as in the FMU": [run[f"{name}_link.phi_[rad]"] for name in ARM]}
 for K in ("K1", "K3"):
     springs = {name: jointfmu.drive(drive).values[K] for name, (*_, drive) in ARM.items()}  # N.m/rad
     wound = [-run[f"{name}_drive.tau2_[N.m]"] / k for name, k in springs.items()]
@@ -47,7 +47,7 @@ for K in ("K1", "K3"):
 
 # %%
 figure, (load, wind_up, error) = plt.subplots(1, 3, figsize=(12.0, 4.2), layout="constrained")
-for name, motor, link in zip(ARM, motors, links["drives as FMUs"], strict=True):
+for name, motor, link in zip(ARM, motors, links["drives as in the FMU"], strict=True):
     load.plot(run["time_[s]"], run[f"{name}_drive.tau2_[N.m]"], label=name)
     wind_up.plot(run["time_[s]"], 1e3 * (link - motor), label=name)
 for label, angles in links.items():

@@ -1,4 +1,4 @@
-"""Simulation of systems: of separate FMUs by a sequential or a parallel master, and of an arm as one FMU."""
+"""Simulation of a system: of its FMUs (FMI 2.0) by a sequential or a parallel master; of an arm as one."""
 
 from contextlib import ExitStack
 from itertools import accumulate

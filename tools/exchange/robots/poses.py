@@ -91,8 +91,8 @@ def compute_ringing(
 ) -> list[Ringing]:
     """Vibration of the arm after the stop of each motor, at a pose under weight, the other motors held.
 
-    The motor of the axis brakes at a constant rate: its drive carries the rated torque beyond weight. When
-    the motor stands still, the arm is released from the wind-up of braking. The equations are
+    The motor of the axis brakes at a constant rate: its drive carries its rated torque in addition to the
+    weight. When the motor stands still, the arm is released from the wind-up of braking. The equations are
     M x" + D x' + K x = 0, with the mass matrix M of the links, and damping d and tangent stiffness of the
     drives. Hysteresis and friction of the drives are neglected: they make the decay faster.
 

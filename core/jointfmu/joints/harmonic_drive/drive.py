@@ -233,7 +233,7 @@ def kinematic_error(drive: DriveParameters, phi1: Number) -> tuple[Number, Numbe
 
 
 def compute_harmonics(angle: Number, orders: Sequence[int]) -> dict[int, tuple[Number, Number]]:
-    """{n: (sin(n angle), cos(n angle))} of orders n that are powers of 2, by the double-angle formulas.
+    """{n: (sin(n angle), cos(n angle))} of orders n, powers of 2, by the formulas of the double angle.
 
     Sine and cosine are evaluated once: they take a large part of the time of a drive.
     """
