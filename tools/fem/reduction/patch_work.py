@@ -36,6 +36,8 @@ losses [1]. The stiffness error stays below 2e-4. A larger weight makes the vall
 for the steps."""
 MIN_DISPLACEMENT = 1e-15
 """Smallest tangential displacement in divisions [m]; also the smallest relative loss in scales [1]."""
+MIN_SQUARE_RATIO = 1e-12
+"""Mean square distance of the points of a cell from its centre over the largest one [1]; below: round-off."""
 MIN_RELATIVE_DISPLACEMENT_SCALE = 0.03
 """Lower limit of the scale of patch displacements by a mode, over the largest scale of all modes [1]."""
 
@@ -391,7 +393,7 @@ def patch_rotations(
     x, y = (quadrature_position - (averaging_matrix @ quadrature_position)[cell]).T
     lever = x[:, None] * tangential_displacements[1] - y[:, None] * tangential_displacements[0]
     square = averaging_matrix @ (x * x + y * y)
-    extended = square > 0.0
+    extended = square > MIN_SQUARE_RATIO * square.max()  # a cell with one point does not rotate
     inverse = np.where(extended, 1.0 / np.where(extended, square, 1.0), 0.0)
     return np.asarray(inverse[:, None] * (averaging_matrix @ lever))
 
