@@ -302,7 +302,7 @@ def read_entries(
     sections: Mapping[str, object],
     allowed_keys: tuple[str, ...] = ("value", "unit", "kind", "source"),
 ) -> tuple[dict[str, Any], dict[str, str], dict[str, str]]:
-    """Values, origins and sources of the entries, each by structured name.
+    """Values, origins and sources of the entries of a parameter file, each by structured name.
 
     declared_fields : {structured name: field}; the unit of each entry is checked against its field
     sections        : nested sections and entries of the document

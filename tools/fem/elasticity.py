@@ -18,7 +18,7 @@ from jointfmu.quantity import Array
 class Cholesky:
     """Supernodal Cholesky factor of a sparse symmetric positive definite matrix.
 
-    matrix : (n, n) scipy.sparse; only its lower triangle is read
+    positive_definite_matrix : (n, n) scipy.sparse; only its lower triangle is read
 
     Raises
     ------

@@ -547,8 +547,6 @@ def is_small_amplitude(
     """Whether a friction cycle needs `small_cycle_energies`: differences of energies would cancel.
 
     Arguments: amplitude [m] of the displacement, load [Pa] and stiffness [Pa/m] of the contact.
-
-    At a load [Pa] and stiffness [Pa/m].
     """
     return (
         amplitude * (stiffness_ratio / friction_coefficient) * stiffness < SMALL_CYCLE_FORCE_OVER_LOAD * load

@@ -155,7 +155,10 @@ def assemble_parameter_set(
 
 
 def _group_sections(group_field: Field[object], default_type: object) -> dict[str, type[object]]:
-    """{section name: class} that a group may have; `default_type` is the declared type of the field."""
+    """File sections that a group of parameters may have: {section name: class}.
+
+    default_type : declared type of the field of the group
+    """
     return group_field.metadata["alternatives"] or {name_in_file(group_field): default_type}
 
 

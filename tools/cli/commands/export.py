@@ -285,7 +285,10 @@ def _check_working_point(args: argparse.Namespace, joint_name: str) -> None:
 
 
 def _check_options(args: argparse.Namespace, parameter_file: ParameterFile) -> None:
-    """Check the options. Raises ValueError if one has no effect, is missing or is out of range."""
+    """Check the options of `jointfmu export`.
+
+    Raises ValueError if one has no effect, is missing or is out of range.
+    """
     exports.require_export(parameter_file.joint, args.what)
     _check_working_point(args, parameter_file.joint)
     node_options = ("node_1", "node_2")

@@ -41,7 +41,7 @@ def presliding_angle(drive: Transmission, motor_inertia: float, step: float) -> 
 
 
 def is_integrator_stable(simulation_options: Any) -> bool:
-    """Whether the integrator in MuJoCo's options is stable with bristles."""
+    """Whether the integrator in MuJoCo's options is stable with the LuGre friction (bristles) of a motor."""
     import mujoco
 
     return bool(simulation_options.integrator != mujoco.mjtIntegrator.mjINT_RK4)

@@ -233,7 +233,7 @@ def make_drive_with_catalogue_law_from_row(
     sourced_numbers: Mapping[str, SourcedNumber] | None = None,
     source: str = "catalogue",
 ) -> FitResult:
-    """Make the drive with the three lines of a row; no parameter is fitted.
+    """Make a drive whose midline is the three lines of a catalogue row; no parameter is fitted.
 
     Arguments as for `fit_contact_pair_law`.
 
