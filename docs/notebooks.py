@@ -1,6 +1,7 @@
 """Examples as notebooks with their output, and as pages of the site."""
 
 import os
+import subprocess
 import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -43,7 +44,8 @@ def run_notebook(notebook: NotebookNode, folder: Path) -> None:
         extra_arguments=["--log-level=ERROR"],
         resources={"metadata": {"path": str(folder)}},
     )
-    client.execute(env=os.environ | KERNEL_ENVIRONMENT)
+    # standard output of the kernel repeats what the notebook stores
+    client.execute(env=os.environ | KERNEL_ENVIRONMENT, stdout=subprocess.DEVNULL)
     for cell in notebook.cells:
         cell.metadata.pop("execution", None)  # times of day
 
@@ -60,6 +62,7 @@ def write_page(script: Path, pages: Path, finished: Path | None) -> None:
         notebook = nbformat.read(finished / name, as_version=4)
     else:
         notebook = read_notebook(script)
+        print(f"run {script.name}", flush=True)
         with TemporaryDirectory() as folder:
             try:
                 run_notebook(notebook, Path(folder))
