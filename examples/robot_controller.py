@@ -3,9 +3,10 @@
 # A joint controller for an elastic arm
 
 A joint controller tuned on the rigid arm, on constant springs and on the FMU; each then runs on the FMU.
-The builds of the FMU take a few minutes. Needs the extra `mujoco`.
+The build of the FMU takes a few minutes. Needs the extra `mujoco`.
 """
 
+# %%
 # %%
 import subprocess
 import sys
@@ -39,8 +40,7 @@ spec = mujoco.MjSpec.from_file(ROBOT)
 tip = spec.body("flange")
 tip.mass, tip.inertia, tip.explicitinertial = PAYLOAD, [1e-9] * 3, True
 tip.ipos, tip.iquat = [0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]
-model = spec.compile()
-data = mujoco.MjData(model)
+data = mujoco.MjData(model := spec.compile())
 names = [model.joint(k).name for k in range(model.njnt)]
 n, driven = len(names), np.array([name in DRIVES for name in names])
 data.qpos[:] = [START.get(name, 0.0) for name in names]
@@ -48,18 +48,16 @@ mujoco.mj_forward(model, data)
 mass, jacobian = np.zeros((n, n)), np.zeros((3, n))
 mujoco.mj_fullM(model, data, mass)
 mujoco.mj_jacBody(model, data, jacobian, None, model.body("flange").id)
-rotors = model.dof_armature.copy()
-inertia = mass.diagonal()  # of link and rotor
+rotors, inertia = model.dof_armature, mass.diagonal()  # inertia of link and rotor
 drives = {name: jointfmu.drive(size).values for name, size in DRIVES.items()}
-K = np.array([drives[name]["K3"] if name in DRIVES else 0.0 for name in names])
-d = np.array([drives[name]["d"] if name in DRIVES else 0.0 for name in names])
-ratio = np.array([drives[name]["ratio"] if name in DRIVES else 1.0 for name in names])
+rigid = {"K3": 0.0, "d": 0.0, "ratio": 1.0}
+K, d, ratio = np.transpose([[drives.get(name, rigid)[key] for key in rigid] for name in names])
 load = data.qfrc_bias / ratio  # motor torques that hold the weight at the start
 
 
 def target(time):
     """Angle from the start [rad] and speed [rad/s] of all joints: a quintic from rest to rest."""
-    x = min(time / MOVE, 1.0)
+    x = min(max(time / MOVE, 0.0), 1.0)
     return TRAVEL * x**3 * (10 - 15 * x + 6 * x * x), TRAVEL * 30 * x * x * (1 - x) ** 2 / MOVE
 
 
@@ -69,21 +67,17 @@ def torque(bandwidth, time, q, motor_speed):
     return inertia * (w**2 * (angle - q) + 2.0 * DAMPING * w * (speed - motor_speed))
 
 
-def simulate_linear(bandwidth, stiffness):
-    """Tip (times, 3) [m] from its start; stiffness None: rigid joints. The weight is compensated."""
-    if stiffness is None:
-        M, S = mass, np.zeros((n, n))
-        D, motors = S, np.arange(n)
-    else:  # angles of all links, then of the rotors of the driven joints at the joint
-        elastic = np.flatnonzero(driven)
-        motors = np.arange(n)
-        motors[elastic] = n + np.arange(elastic.size)
-        M = np.zeros((n + elastic.size,) * 2)
-        M[:n, :n] = mass - np.diag(np.where(driven, rotors, 0.0))
-        M[n:, n:] = np.diag(rotors[elastic])
-        B = np.zeros((elastic.size, len(M)))  # wind-up of the drives
-        B[np.arange(elastic.size), elastic], B[np.arange(elastic.size), motors[elastic]] = 1.0, -1.0
-        S, D = B.T @ np.diag(stiffness[elastic]) @ B, B.T @ np.diag(d[elastic]) @ B
+def simulate_linear(bandwidth, has_springs):
+    """Tip (times, 3) [m] from its start; with springs K3 or rigid joints. The weight is compensated."""
+    elastic = np.flatnonzero(driven) if has_springs else np.array([], dtype=int)
+    motors, rows = np.arange(n), np.arange(elastic.size)
+    motors[elastic] = n + rows  # after the links, the rotors of the driven joints at the joint
+    M = np.diag(np.concatenate([np.zeros(n), rotors[elastic]]))
+    M[:n, :n] = mass
+    M[elastic, elastic] -= rotors[elastic]
+    B = np.zeros((elastic.size, len(M)))  # wind-up of the drives
+    B[rows, elastic], B[rows, motors[elastic]] = 1.0, -1.0
+    S, D = B.T @ np.diag(K[elastic]) @ B, B.T @ np.diag(d[elastic]) @ B
     m = len(M)
     A = np.zeros((2 * m + n, 2 * m + n))
     A[:m, m : 2 * m] = np.eye(m)
@@ -101,13 +95,9 @@ description = fmpy.read_model_description(FMU)
 refs = {v.name: v.valueReference for v in description.modelVariables}
 motors = [refs[f"{name}.motor.w" if name in DRIVES else f"{name}.w"] for name in names]
 read = [refs[f"{name}.phi"] for name in names] + motors + [refs[f"tip.{x}"] for x in "xyz"]
-fmu = FMU3Slave(
-    guid=description.guid,
-    unzipDirectory=fmpy.extract(FMU),
-    modelIdentifier=description.coSimulation.modelIdentifier,
-    instanceName="arm",
-)
-fmu.instantiate()
+keys = {"guid": description.guid, "modelIdentifier": description.coSimulation.modelIdentifier}
+fmu = FMU3Slave(**keys, unzipDirectory=fmpy.extract(FMU), instanceName="arm")
+fmu.instantiate(logMessage=lambda *_: None)
 
 
 def simulate_fmu(bandwidth):
@@ -117,11 +107,11 @@ def simulate_fmu(bandwidth):
     fmu.exitInitializationMode()
     start, rows = data.qpos, []
     for k in range(round((1.0 + STOP) / STEP)):
-        q, speed, place = np.split(np.array(fmu.getFloat64(read)), [n, 2 * n])
+        time, (q, speed, place) = k * STEP - 1.0, np.split(np.array(fmu.getFloat64(read)), [n, 2 * n])
         rows.append(place)
-        if np.abs(q - start - target(k * STEP - 1.0)[0] * (k * STEP > 1.0)).max() > MAX_DEVIATION:
+        if np.abs(q - start - target(time)[0]).max() > MAX_DEVIATION:
             return np.full((1, 3), np.inf)
-        tau = torque(bandwidth, k * STEP - 1.0 if k * STEP > 1.0 else 0.0, q - start, speed / ratio)
+        tau = torque(bandwidth, time, q - start, speed / ratio)
         fmu.setFloat64([refs[f"{name}.tau_motor"] for name in names], (load + tau / ratio).tolist())
         fmu.doStep(k * STEP, STEP)
     return np.array(rows)[round(1.0 / STEP) :] - rows[0]
@@ -129,7 +119,8 @@ def simulate_fmu(bandwidth):
 
 def ringing(tip):
     """Largest movement of the tip [m] in the last 0.2 s."""
-    return np.linalg.norm(np.ptp(tip[-round(0.2 / STEP) :], axis=0)) if np.isfinite(tip).all() else np.inf
+    last = tip[-round(0.2 / STEP) :]
+    return np.linalg.norm(np.ptp(last, axis=0)) if np.abs(last).max() < 1.0 else np.inf
 
 
 def tune(simulate):
@@ -141,8 +132,8 @@ def tune(simulate):
 
 
 models = {
-    "rigid arm": lambda b: simulate_linear(b, None),
-    "constant springs": lambda b: simulate_linear(b, K),
+    "rigid arm": lambda b: simulate_linear(b, False),
+    "constant springs": lambda b: simulate_linear(b, True),
     "FMU": simulate_fmu,
 }
 figure, axes = plt.subplots(layout="constrained")
@@ -151,11 +142,11 @@ for name, simulate in models.items():
     bandwidth = tune(simulate)
     moved = simulate_fmu(bandwidth)
     rest = [1e3 * ringing(moves) for moves in (simulate(bandwidth), moved)]
-    print(f"{name:17} {bandwidth:14.1f}  {rest[0]:18.3f}  {rest[1]:15.3f}")
+    there, here = (f"{x:.3f}" if x < np.inf else "unstable" for x in rest)
+    print(f"{name:17} {bandwidth:14.1f}  {there:>18}  {here:>15}")
     if np.isfinite(moved).all():
-        axes.plot(
-            STEP * np.arange(len(moved)), 1e3 * moved[:, 2], label=f"tuned on {name}, {bandwidth:.1f} Hz"
-        )
+        label = f"tuned on {name}, {bandwidth:.1f} Hz"
+        axes.plot(STEP * np.arange(len(moved)), 1e3 * moved[:, 2], label=label)
 axes.set(xlabel="time [s]", ylabel="height of the tip on the FMU [mm]")
 axes.legend(frameon=False)
 figure.savefig("robot_controller.png")

@@ -20,6 +20,7 @@ from jointfmu_tools.exchange.modelica.systems import render_system_model
 from jointfmu_tools.pages.report.systems import joint_load_outputs, system_charts
 from jointfmu_tools.systems import ssp
 from jointfmu_tools.systems.arm import Arm, Link
+from jointfmu_tools.systems.fmu.arm_links import ArmLinks
 from jointfmu_tools.systems.ssp import find_fmu_names
 from jointfmu_tools.systems.steps import find_largest_stable_step
 from jointfmu_tools.systems.system import list_system_names, load_system, read_system
@@ -323,6 +324,25 @@ def test_the_tip_is_where_the_links_lead() -> None:
     above = reach - ROBOT.links[0].length
     expected = [[above * math.cos(0.5), above * math.sin(0.5), ROBOT.links[0].length]]
     np.testing.assert_allclose(ROBOT.tip_position(level), expected, atol=1e-12)
+
+
+def test_coupled_links_have_the_inverse_dynamics_of_the_arm() -> None:
+    """At random states: accelerations from the torques of inverse dynamics, residuals, tip."""
+    links = ArmLinks(ROBOT)
+    parameters = links.make_component().parameters.values
+    q, speed, acceleration = np.random.default_rng(5).normal(size=(3, 20, 6))
+    columns = {"phi": q, "w": speed, "a": acceleration, "tau": ROBOT.inverse_dynamics(q, speed, acceleration)}
+    values = {
+        f"{name}_link.{key}": column[:, k]
+        for key, column in columns.items()
+        for k, name in enumerate(ROBOT.axis_names)
+    }
+    found = links.evaluate_outputs(parameters, values)
+    for k, name in enumerate(ROBOT.axis_names):
+        np.testing.assert_allclose(found[f"{name}_link.a"], acceleration[:, k], rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(links.evaluate_residuals(parameters, values), 0.0, atol=1e-9)
+    tip = np.stack([found[f"tip.{x}"] for x in "xyz"], axis=1)
+    np.testing.assert_allclose(tip, ROBOT.tip_position(q), atol=1e-12)
 
 
 def test_six_drives_differ_and_wind_up_as_their_catalogue_says() -> None:

@@ -71,7 +71,7 @@ class ArmLinks:
         )
 
     def make_component(self) -> SystemComponent:
-        """Component of the system; the torque of the drive NAME_drive acts on the link NAME_link."""
+        """Component of the system; the torque of each drive acts on the link behind its axis."""
         no_payload = Payload(**dict.fromkeys(("m", "x", "y", "z", "J_x", "J_y", "J_z"), 0.0))
         values = ArmParameters(payload=no_payload)
         names = flatten_parameters(values)
