@@ -442,5 +442,6 @@ def _check_motor_torque(
         if torque_constant is not None:
             advice = f"check --torque-constant = {torque_constant:g} N.m/A, and the size of the drive"
         raise ValueError(
-            f"{path}: a motor torque of {largest:.4g} N.m is outside [-{limit:.4g}, {limit:.4g}] N.m; {advice}"
+            f"{path}: a motor torque of {largest:.4g} N.m is outside [-{limit:.4g}, {limit:.4g}] N.m; "
+            f"{advice}"
         )
