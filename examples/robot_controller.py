@@ -7,7 +7,6 @@ The build of the FMU takes a few minutes. Needs the extra `mujoco`.
 """
 
 # %%
-# %%
 import subprocess
 import sys
 from importlib.resources import files

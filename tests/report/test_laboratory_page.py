@@ -103,6 +103,10 @@ def test_the_first_loop_starts_without_a_jump_and_loads_the_joint(shown: Browser
     assert first == pytest.approx(second - first)
     assert answer[0] == 0.0
     assert any(answer)
+    loss, note = shown.run(
+        "laboratory.then(({ path }) => [path.trace.loss.at(-1), path.heat && path.heat.note.textContent])"
+    )
+    assert loss is None or note.startswith("No loss along this path") == (loss == 0.0)
 
 
 @needed

@@ -162,6 +162,7 @@ class Path {
 
   showHeat() {
     const { loss } = this.trace;
+    this.heat.note.textContent = loss.some((energy) => energy) ? this.loss.doc : "No loss along this path: the parameters state no friction, or nothing slips.";
     this.heat.draw([{ name: this.loss.name, x: loss.map((_, i) => i), y: shown(this.loss, loss) }], { label: "points of the path" }, { label: label(this.loss) });
   }
 
