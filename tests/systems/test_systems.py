@@ -784,14 +784,14 @@ def test_energy_stays_over_a_thousand_periods(built: Path) -> None:
     angle = 1.3e-3
     period = 2.0 * math.pi * math.sqrt(LINK / float(DRIVE.evaluate_torque(3.0)["K_WTS"]))
     largest = float(DRIVE.evaluate_motion(0.0, 0.0, angle, 0.0)["K_WTS"])
-    for steps in (20, 40):
+    for steps, periods in ((20, 1000), (40, 250)):
         band = 0.5 * largest / LINK * (period / steps) ** 2
-        e = energy(ring(built, period / steps, 1000 * steps, angle, 0.0))
+        e = energy(ring(built, period / steps, periods * steps, angle, 0.0))
         assert np.max(np.abs(e / e[0] - 1.0)) < band  # within a period; no drift over them:
         assert abs(e[-100 * steps :].mean() / e[: 100 * steps].mean() - 1.0) < 1e-4
-    late = energy(ring(built, period / 300, 60_000, angle, 0.0, True))
+    late = energy(ring(built, period / 300, 15_000, angle, 0.0, True))
     omega = 2.0 * math.pi / 300  # a late force adds energy, as if damping were -omega^3/2
-    assert 0.0 < late[-3000:].mean() / late[:3000].mean() - 1.0 < 2.0 * math.pi * omega**3 * 200 * 1.5
+    assert 0.0 < late[-3000:].mean() / late[:3000].mean() - 1.0 < 2.0 * math.pi * omega**3 * 50 * 1.5
 
 
 def working_point(torque: float) -> tuple[float, float]:

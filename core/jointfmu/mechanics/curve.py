@@ -115,7 +115,7 @@ class Curve:
             out[0] = out[0] * t + coefficient[i]
         out = [value * (factorial(n) / h**n) for n, value in enumerate(out)]
         is_outside = displacement != inside
-        if not np.any(is_outside):
+        if not is_outside.any():
             return out
         slope = out[1] if order else self.derivatives(inside, 1)[1]
         out[0] = out[0] + (displacement - inside) * slope
@@ -136,7 +136,7 @@ class Curve:
             mean = mean * t + monomial_mean * coefficient
         energy = np.asarray(self._node_energies[i] + step * mean)
         excess = displacement - inside
-        if not np.any(excess):
+        if not excess.any():
             return energy
         load, stiffness = self.derivatives(inside, 1)
         return np.asarray(energy + excess * (load + 0.5 * excess * stiffness))
@@ -186,7 +186,7 @@ class Curve:
 def _find_segment(node_abscissas: Array, abscissas: Array) -> NDArray[np.intp]:
     """Index (...) of the segment of nodes (n) that contains an abscissa (...), or of the nearest segment."""
     return np.minimum(
-        np.maximum(np.searchsorted(node_abscissas, abscissas, side="right") - 1, 0), node_abscissas.size - 2
+        np.maximum(node_abscissas.searchsorted(abscissas, side="right") - 1, 0), node_abscissas.size - 2
     )
 
 

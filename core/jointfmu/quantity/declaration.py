@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import MISSING, Field, field, fields
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -77,6 +78,9 @@ def find_problem(name: str, value: object, declared_field: Field[object]) -> str
     It has name, value, unit and allowed values.
     """
     meta = declared_field.metadata
+    is_real = not meta.get("whole", True) and "series" not in meta
+    if is_real and type(value) is float and meta["interval"].contains(value):
+        return None
     if is_symbol(value):
         return None
     if "allowed" in meta:
@@ -85,8 +89,6 @@ def find_problem(name: str, value: object, declared_field: Field[object]) -> str
         return f"{name} = {value!r} is not one of {', '.join(str(a).lower() for a in meta['allowed'])}"
     if "series" in meta:
         return _find_series_problem(name, value, declared_field)
-    if type(value) is float and not meta["whole"] and meta["interval"].contains(value):
-        return None
     unit = "" if meta["unit"] == "1" else f" {meta['unit']}"
     number = isinstance(value, int | float | np.ndarray | np.number) and not isinstance(value, bool)
     array = np.asarray(value)
@@ -146,11 +148,17 @@ def _shorten_repr(value: object) -> str:
 
 def check_fields(parameters: Any) -> None:
     """Raise ValueError that names every field outside its interval; NaN and infinity are outside."""
-    declared = {name_in_file(item): item for item in fields(parameters) if "group" not in item.metadata}
+    declared = _checked_fields(type(parameters))  # type: ignore[arg-type]
     if texts := find_problems(
         {name: getattr(parameters, item.name) for name, item in declared.items()}, declared
     ):
         raise ValueError("; ".join(texts))
+
+
+@cache
+def _checked_fields(cls: Any) -> dict[str, Field[Any]]:
+    """{name in parameter files: field} of the values of a class, without its groups."""
+    return {name_in_file(item): item for item in fields(cls) if "group" not in item.metadata}
 
 
 class CheckedParameters:

@@ -58,7 +58,7 @@ class Interval:
 
         True if a value or an end is a symbol: it has no value yet.
         """
-        if any(is_symbol(number) for number in (value, self.low, self.high)):
+        if is_symbol(value) or is_symbol(self.low) or is_symbol(self.high):
             return True
         above = value > self.low if self.low_open else value >= self.low
         below = value < self.high if self.high_open else value <= self.high
@@ -106,7 +106,7 @@ def _next_float(start_value: float, direction_value: float) -> float:
 
 def is_symbol(value: object) -> bool:
     """Whether a value is a symbol of a computer-algebra tool (CasADi)."""
-    return type(value).__module__.startswith("casadi")
+    return type(value) is not float and type(value).__module__.startswith("casadi")
 
 
 def erf(x: Number) -> Number:

@@ -5,7 +5,7 @@ A structured name joins the names of groups and field with dots: `surface.D`.
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import MISSING, Field, dataclass, fields, is_dataclass
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any, TypeVar, get_type_hints
 
 from .declaration import find_problems, name_in_file
@@ -87,15 +87,26 @@ def _cached_flattened_fields(cls: Any) -> tuple[tuple[str, Field[object]], ...]:
 def flatten_parameters(parameters: Any) -> dict[str, Any]:
     """Convert a parameter set to {structured name: value}."""
     values: dict[str, Any] = {}
-    for item in fields(parameters):
+    for item, name in _named_fields(type(parameters)):  # type: ignore[arg-type]
         value = getattr(parameters, item.name)
-        if is_dataclass(value) and "group" in item.metadata:
-            values |= {
-                f"{_section_name(item, value)}.{name}": v for name, v in flatten_parameters(value).items()
-            }
-        elif item.metadata:
-            values[name_in_file(item)] = value
+        if "group" in item.metadata and is_dataclass(value):
+            section = _section_name(item, value)
+            values |= {f"{section}.{inner}": v for inner, v in flatten_parameters(value).items()}
+        else:
+            values[name] = value
     return values
+
+
+@cache
+def _named_fields(cls: Any) -> tuple[tuple[Field[Any], str], ...]:
+    """Fields of a parameter set class with their names in parameter files, cached."""
+    return tuple((item, name_in_file(item)) for item in fields(cls) if item.metadata)
+
+
+@lru_cache(maxsize=256)
+def _selected_fields(cls: Any, parameter_names: tuple[str, ...]) -> dict[str, Field[Any]]:
+    """{structured name: field} of the alternatives that parameter names select, cached."""
+    return dict(flatten_fields(cls, parameter_names=parameter_names))
 
 
 def build_parameter_set(cls: type[ParameterSet], values: Mapping[str, object]) -> ParameterSet:
@@ -104,7 +115,7 @@ def build_parameter_set(cls: type[ParameterSet], values: Mapping[str, object]) -
     Raises ValueError, one line, that names every unknown or missing name and every value that is not a number
     or lies outside its interval; also if names belong to two alternatives of a group.
     """
-    declared = dict(flatten_fields(cls, parameter_names=values))
+    declared = _selected_fields(cls, tuple(values))  # type: ignore[arg-type]
     required = {name for name, item in declared.items() if item.default is MISSING}
     if texts := find_problems(values, declared, sorted(required - values.keys())):
         raise ValueError("; ".join(texts))
@@ -118,8 +129,9 @@ def replace_values(parameters: ParameterSet, new_values: Mapping[str, object]) -
     Raises ValueError as `build_parameter_set` does, and for names of a missing alternative.
     """
     values = flatten_parameters(parameters)
-    all_names = {name for name, _ in flatten_fields(type(parameters))}
-    if foreign := [name for name in new_values if name in all_names and name not in values]:
+    unknown = [name for name in new_values if name not in values]
+    all_names = {name for name, _ in flatten_fields(type(parameters))} if unknown else set()
+    if foreign := [name for name in unknown if name in all_names]:
         texts = [
             f"{name} is not a parameter of a set that has [{_find_present_section(parameters, name)}]"
             for name in foreign
