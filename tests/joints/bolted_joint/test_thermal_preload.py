@@ -238,7 +238,7 @@ def test_finite_elements_with_a_mismatch_on_the_bolt_gain_as_much_preload(tmp_pa
     spring = BoltedJointSpring.for_joint(joint)
     factor = spring.compliances(20e3).joint_load_factor
     gain = joint.bolt_stiffness * 8.25e-6 * (1.0 - factor)
-    # these plates are stiffer than the cones of VDI 2230, docs/validity_bolted_joint.md
+    # the coarse elements of the tests are stiffer than the cones of VDI 2230
     assert preload_at_temperature(joint, 0.0, WARM) == pytest.approx(gain, rel=0.08)
 
 
