@@ -184,7 +184,7 @@ def test_what_a_miss_means(role):
     assert row.verdict == ("no test, moved" if role in UNTESTED_ROLES else "miss")
     met = compare_point(point(role=role), -200.0)
     assert met.verdict == ("no test" if role in UNTESTED_ROLES else "pass")
-    assert count_points([row]).missed_point_ids == [r.point.id for r in missed_points([row])]
+    assert count_points([row]).missed == [r.point.id for r in missed_points([row])]
 
 
 def test_who_is_nearer():
@@ -311,26 +311,16 @@ def test_missed_points_are_listed(rows):
 
 def test_counts(rows):
     found = count_points(rows)
-    assert sum(found.count_by_role.values()) == len(ALL)
-    assert (
-        found.count_by_role
-        == {role: sum(p.role == role for p in ALL) for role in ROLES}
-        == found.met_count_by_role
-    )
-    assert (
-        found.number_count
-        == found.printed_count + found.derived_count
-        == len(ALL) - found.count_by_role["claim"]
-    )
-    assert found.printed_count == len(PRINTED)
-    assert found.guessed_count_by_role == {
-        role: n if role in GUESS_ROLES else 0 for role, n in found.count_by_role.items()
-    }
-    assert found.nearer_count_by_role == {
+    assert sum(found.roles.values()) == len(ALL)
+    assert found.roles == {role: sum(p.role == role for p in ALL) for role in ROLES} == found.met
+    assert found.numbers == found.printed + found.derived == len(ALL) - found.roles["claim"]
+    assert found.printed == len(PRINTED)
+    assert found.guessed == {role: n if role in GUESS_ROLES else 0 for role, n in found.roles.items()}
+    assert found.nearer == {
         role: sum(r.nearer_estimate == "law" and r.point.role == role for r in rows) for role in ROLES
     }
-    assert len(found.contradicted_claim_ids) == 3
-    assert found.missed_point_ids == []
+    assert len(found.contradictions) == 3
+    assert found.missed == []
 
 
 def test_the_guide_explains_every_role():
@@ -343,18 +333,18 @@ def test_the_guide_explains_every_role():
 
 def test_summary(rows):
     found = count_points(rows)
-    roles = ", ".join(f"{n} {role}" for role, n in found.count_by_role.items() if role != "claim")
+    roles = ", ".join(f"{n} {role}" for role, n in found.roles.items() if role != "claim")
     assert format_summary(rows) == (
-        f"{found.number_count} numbers, {found.printed_count} printed in the papers and "
-        f"{found.derived_count} computed from printed ones: {roles}; {found.count_by_role['claim']} claims; "
-        f"nearer than the trivial guess: {found.nearer_count_by_role['interpolation']} of 5 (interpolation), "
-        f"{found.nearer_count_by_role['prediction']} of 1 "
+        f"{found.numbers} numbers, {found.printed} printed in the papers and "
+        f"{found.derived} computed from printed ones: {roles}; {found.roles['claim']} claims; "
+        f"nearer than the trivial guess: {found.nearer['interpolation']} of 5 (interpolation), "
+        f"{found.nearer['prediction']} of 1 "
         "(prediction); "
-        f"text against its own equations: {', '.join(found.contradicted_claim_ids)}; missed: none"
+        f"text against its own equations: {', '.join(found.contradictions)}; missed: none"
     )
     off = [replace(row, has_passed=False) if row.point.id == "p_max.9kN" else row for row in rows]
     assert (
-        f"{found.count_by_role['calibration']} calibration ({found.count_by_role['calibration'] - 1} met)"
+        f"{found.roles['calibration']} calibration ({found.roles['calibration'] - 1} met)"
         in format_summary(off)
     )
 

@@ -184,12 +184,12 @@ def predicted(count):
 def test_counts_are_those_of_the_comparison(rows):
     found = validation.count_points(rows)
     n, lost = (
-        found.count_by_role,
-        sum(found.guessed_count_by_role.values()) - sum(found.nearer_count_by_role.values()),
+        found.roles,
+        sum(found.guessed.values()) - sum(found.nearer.values()),
     )
     for said in (
-        f"{found.number_count} numbers are compared, {found.printed_count} printed in the papers and "
-        f"{found.derived_count} computed from printed ones, and {n['claim']} claims",
+        f"{found.numbers} numbers are compared, {found.printed} printed in the papers and "
+        f"{found.derived} computed from printed ones, and {n['claim']} claims",
         f"{n['calibration']} were used to calibrate, {n['circular']} are met by construction, "
         f"{n['constant']} are constants, {n['self-check']} self-checks "
         f"and {n['contradiction']} a contradiction",
@@ -225,13 +225,10 @@ def test_the_start_says_how_far_it_holds(rows):
     assert here is not None
     assert here.start() < start.index("![")
     found = validation.count_points(rows)
-    share = predicted(found.count_by_role["prediction"])
-    said = f"Of the {found.number_count} numbers compared with the papers {share}: "
+    share = predicted(found.roles["prediction"])
+    said = f"Of the {found.numbers} numbers compared with the papers {share}: "
     assert said in here[1]
-    assert (
-        f"of the {found.number_count} numbers compared {predicted(found.count_by_role['prediction'])};"
-        in trust
-    )
+    assert f"of the {found.numbers} numbers compared {predicted(found.roles['prediction'])};" in trust
     assert re.search(r"\| \[Validity\]\(validity\.md\)", start.partition("## Where to go")[2])
 
 

@@ -98,7 +98,7 @@ def _run_validate(args: argparse.Namespace) -> CommandResult:
     laws = law_reference.compare_laws()
     counts = asdict(validation.count_points(rows))
     missed_laws = law_reference.missed_quantities(laws)
-    misses = [*missed_laws, *(row.point.id for row in validation.missed_points(rows))]
+    misses = [*missed_laws, *counts["missed"]]
     return CommandResult(
         json_document={
             "laws": [law.to_json() for law in laws],

@@ -123,26 +123,28 @@ def missed_points(validated_points: Sequence[ValidatedPoint]) -> list[ValidatedP
 class PublishedPointCounts:
     """Numbers of compared points by role and verdict, as the README, the report and the pages state them.
 
-    number_count           : number of published numbers, without claims
-    printed_count          : number of points that the papers print
-    derived_count          : number of points computed from printed numbers
-    count_by_role          : {role: number of points}, with claims
-    met_count_by_role      : {role: number of points within their tolerance}
-    guessed_count_by_role  : {role: number of points with a trivial guess}
-    nearer_count_by_role   : {role: number of points to which the law is nearer than the guess}
-    contradicted_claim_ids : ids of claims that the equations of the same paper contradict
-    missed_point_ids       : ids of points outside their tolerance, see `missed_points`
+    The field names are keys of the document that `jointfmu validate --json` writes.
+
+    numbers        : number of published numbers, without claims
+    printed        : number of points that the papers print
+    derived        : number of points computed from printed numbers
+    roles          : {role: number of points}, with claims
+    met            : {role: number of points within their tolerance}
+    guessed        : {role: number of points with a trivial guess}
+    nearer         : {role: number of points to which the law is nearer than the guess}
+    contradictions : ids of claims that the equations of the same paper contradict
+    missed         : ids of points outside their tolerance, see `missed_points`
     """
 
-    number_count: int
-    printed_count: int
-    derived_count: int
-    count_by_role: dict[str, int]
-    met_count_by_role: dict[str, int]
-    guessed_count_by_role: dict[str, int]
-    nearer_count_by_role: dict[str, int]
-    contradicted_claim_ids: list[str]
-    missed_point_ids: list[str]
+    numbers: int
+    printed: int
+    derived: int
+    roles: dict[str, int]
+    met: dict[str, int]
+    guessed: dict[str, int]
+    nearer: dict[str, int]
+    contradictions: list[str]
+    missed: list[str]
 
 
 def count_points(validated_points: Sequence[ValidatedPoint]) -> PublishedPointCounts:
@@ -151,21 +153,21 @@ def count_points(validated_points: Sequence[ValidatedPoint]) -> PublishedPointCo
     printed = sum(point.printed for point in numbers)
     guessed = [row for row in validated_points if row.nearer_estimate]
 
-    def count_by_role(points: Sequence[ValidatedPoint]) -> dict[str, int]:
+    def roles(points: Sequence[ValidatedPoint]) -> dict[str, int]:
         """Number of points of each role."""
         found = Counter(row.point.role for row in points)
         return {role: found[role] for role in ROLES}
 
     return PublishedPointCounts(
-        number_count=len(numbers),
-        printed_count=printed,
-        derived_count=len(numbers) - printed,
-        count_by_role=count_by_role(validated_points),
-        met_count_by_role=count_by_role([row for row in validated_points if row.has_passed]),
-        guessed_count_by_role=count_by_role(guessed),
-        nearer_count_by_role=count_by_role([row for row in guessed if row.nearer_estimate == "law"]),
-        contradicted_claim_ids=[row.point.id for row in validated_points if row.point.text is not None],
-        missed_point_ids=[row.point.id for row in missed_points(validated_points)],
+        numbers=len(numbers),
+        printed=printed,
+        derived=len(numbers) - printed,
+        roles=roles(validated_points),
+        met=roles([row for row in validated_points if row.has_passed]),
+        guessed=roles(guessed),
+        nearer=roles([row for row in guessed if row.nearer_estimate == "law"]),
+        contradictions=[row.point.id for row in validated_points if row.point.text is not None],
+        missed=[row.point.id for row in missed_points(validated_points)],
     )
 
 
@@ -243,20 +245,15 @@ def format_summary(validated_points: Sequence[ValidatedPoint]) -> str:
     """
     found = count_points(validated_points)
     roles = ", ".join(
-        f"{n} {role}"
-        + ("" if found.met_count_by_role[role] == n else f" ({found.met_count_by_role[role]} met)")
-        for role, n in found.count_by_role.items()
+        f"{n} {role}" + ("" if found.met[role] == n else f" ({found.met[role]} met)")
+        for role, n in found.roles.items()
         if role != "claim"
     )
-    nearer = ", ".join(
-        f"{found.nearer_count_by_role[role]} of {n} ({role})"
-        for role, n in found.guessed_count_by_role.items()
-        if n
-    )
+    nearer = ", ".join(f"{found.nearer[role]} of {n} ({role})" for role, n in found.guessed.items() if n)
     return (
-        f"{found.number_count} numbers, {found.printed_count} printed in the papers and "
-        f"{found.derived_count} computed from printed ones: {roles}; {found.count_by_role['claim']} claims; "
+        f"{found.numbers} numbers, {found.printed} printed in the papers and "
+        f"{found.derived} computed from printed ones: {roles}; {found.roles['claim']} claims; "
         f"nearer than the trivial guess: {nearer or 'none'}; "
-        f"text against its own equations: {', '.join(found.contradicted_claim_ids) or 'none'}; "
-        f"missed: {', '.join(found.missed_point_ids) or 'none'}"
+        f"text against its own equations: {', '.join(found.contradictions) or 'none'}; "
+        f"missed: {', '.join(found.missed) or 'none'}"
     )
