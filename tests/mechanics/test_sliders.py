@@ -285,8 +285,8 @@ def closed_paths(few: Foundation, count: int, steps: int) -> tuple[np.ndarray, .
 
 @pytest.mark.slow
 def test_no_closed_path_makes_work():
-    """10 000 paths: no step creates energy, and the work around each path is positive."""
-    least, work, lost, left = closed_paths(foundation(0.8), 10_000, 24)
+    """2000 paths: no step creates energy, and the work around each path is positive."""
+    least, work, lost, left = closed_paths(foundation(0.8), 2_000, 24)
     assert np.all(least >= 0.0)
     assert np.all(work >= 0.0)
     assert np.all(lost + left >= 0.0)
