@@ -684,10 +684,10 @@ def test_the_bolted_column_converges_to_the_packages_law(built: Path) -> None:
     mass = TranslationalMass(m=found["column.m"], lag_a=0.0, lag_b=0.0)
     stiffness, limit = column_sliders(bolted(), found["joint.preload"])
 
-    def rates(time: float, x: Array) -> list[float]:
+    def rates(time: float, x: Array) -> Array:
         f = float(load.evaluate_outputs({"time": time, "f_in": 0.0})["f"])
         moved = mass.evaluate_outputs({"s": x[0], "v": x[1], "f_a": f, "f_b": -x[2:].sum()})
-        return [x[1], float(moved["a"]), *sliding(x[2:], stiffness, limit, x[1])]
+        return np.append([x[1], float(moved["a"])], sliding(x[2:], stiffness, limit, x[1]))
 
     start, small = [0.0] * (2 + limit.size), [1e-12] * 2 + [1e-6] * limit.size  # m, m/s and N
     exact = solve_ivp(rates, (0.95e-3, stop), start, "DOP853", rtol=1e-7, atol=small).y[0, -1]
