@@ -13,6 +13,8 @@ MIN_COMMUNICATION_INTERVAL = 1e-3
 """Smallest communication step [s] of the default experiment.
 
 The implicit step of the system needs no smaller one."""
+ARM_TOLERANCE = 1e-6
+"""Tolerance of an arm [1]: oscillations are slow compared with the prescribed motion, which sets the scale."""
 
 
 def assemble_system(system: System) -> SystemModel:
@@ -54,6 +56,7 @@ def assemble_system(system: System) -> SystemModel:
         key=lambda component: (component.model.state_count > 0, not component.model.is_time_dependent)
     )
     interval = max(system.interval, MIN_COMMUNICATION_INTERVAL)
-    return SystemModel(
+    described = SystemModel(
         system.name, system.description, components, system.stop_time, interval, system.interval
     )
+    return replace(described, tolerance=ARM_TOLERANCE) if system.arm else described

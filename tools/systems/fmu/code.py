@@ -114,7 +114,8 @@ def _format_model_header(system_model: SystemModel) -> str:
         "N_COMPONENT_VALUES": wires + len(system_model.components),
     }
     states = sum(p.model.state_count for p in system_model.bodies)
-    definitions = {"N_STATES": states, "IS_TIME_DEPENDENT": 1, "HAS_IMPLICIT_STEP": 1}
+    definitions: dict[str, float] = {"N_STATES": states, "IS_TIME_DEPENDENT": 1, "HAS_IMPLICIT_STEP": 1}
+    definitions["DEFAULT_TOLERANCE"] = system_model.tolerance
     definitions |= {
         name: value for name, value in (("N_TIME_EVENTS", events), ("N_HISTORY", memory)) if value
     }

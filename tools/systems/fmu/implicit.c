@@ -9,8 +9,9 @@
 #include "instance.h"
 #include "system.h"
 
-#define DEFAULT_TOLERANCE 1e-5 /* of the speeds of a step, relative to `speed_scale`; a host may set a smaller one, */
-#define MIN_TOLERANCE 1e-10    /* down to this one */
+/* DEFAULT_TOLERANCE (model.h): of the speeds of a step, relative to `speed_scale`; a host may set a smaller one, down to
+ * MIN_TOLERANCE. */
+#define MIN_TOLERANCE 1e-10
 #define NEWTON_TOLERANCE_RATIO 1e-2    /* residual correction of Newton's method over the tolerance */
 #define WHOLE_STEP_TOLERANCE_RATIO 1.0 /* the same for a whole step, whose error may be 15 tolerances */
 #define MIN_SPEED_RATIO 1e-6           /* smallest `speed_scale` over the nominal speed */

@@ -76,6 +76,7 @@ class SystemModel:
     stop_time         : stop time [s] of the default experiment
     interval          : communication step [s] of the default experiment
     separate_interval : communication step [s] that separate FMUs would need
+    tolerance         : tolerance of the speeds of an implicit step [1], if the host states none
     """
 
     name: str
@@ -84,6 +85,7 @@ class SystemModel:
     stop_time: float
     interval: float
     separate_interval: float
+    tolerance: float = 1e-5
 
     @property
     def bodies(self) -> list[SystemComponent]:
