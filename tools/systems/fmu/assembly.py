@@ -14,7 +14,7 @@ MIN_COMMUNICATION_INTERVAL = 1e-3
 
 The implicit step of the system needs no smaller one."""
 ARM_TOLERANCE = 1e-6
-"""Tolerance of an arm [1]: oscillations are slow compared with the prescribed motion, which sets the scale."""
+"""Tolerance of an arm [1]: its oscillations are slow beside the prescribed motion, which sets the scale."""
 
 
 def assemble_system(system: System) -> SystemModel:
