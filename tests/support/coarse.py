@@ -5,7 +5,7 @@ Coarse ones are for tests of what does not depend on the resolution.
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from functools import partial
+from inspect import signature
 from typing import Any
 
 import pytest
@@ -20,7 +20,13 @@ def _replaced(owner: Any, name: str, value: Any) -> Iterator[None]:
 
 def elements(of: Any, refinement: float) -> Any:
     """Mesh the bodies of a class, `BoltedContact` or `JointFiniteElements`, with this refinement [1]."""
-    return _replaced(of, "from_assembly", partial(of.from_assembly, refinement=refinement))
+    own = of.from_assembly
+    count = len(signature(own).parameters) - 1  # without the refinement, which is the last one
+
+    def from_assembly(*arguments: Any) -> Any:
+        return own(*arguments[:count], refinement)
+
+    return _replaced(of, "from_assembly", from_assembly)
 
 
 def interface_alone() -> Any:
