@@ -5,6 +5,7 @@ Coarse ones are for tests of what does not depend on the resolution.
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from inspect import signature
 from typing import Any
 
 import pytest
@@ -18,13 +19,14 @@ def _replaced(owner: Any, name: str, value: Any) -> Iterator[None]:
 
 
 def elements(of: Any, refinement: float) -> Any:
-    """Multiply the refinement [1] of the bodies of a class, `BoltedContact` or `JointFiniteElements`."""
-    mesh = of.from_assembly
+    """Mesh the bodies of a class, `BoltedContact` or `JointFiniteElements`, with this refinement [1]."""
+    own = of.from_assembly
+    count = len(signature(own).parameters) - 1  # without the refinement, which is the last one
 
-    def mesh_coarsely(*arguments: Any, **keywords: Any) -> Any:
-        return mesh(*arguments, **keywords | {"refinement": refinement * keywords.get("refinement", 1.0)})
+    def from_assembly(*arguments: Any) -> Any:
+        return own(*arguments[:count], refinement)
 
-    return _replaced(of, "from_assembly", mesh_coarsely)
+    return _replaced(of, "from_assembly", from_assembly)
 
 
 def interface_alone() -> Any:
