@@ -275,9 +275,9 @@ def compute_joint_or_warning(
     except ValueError as error:
         raise ValueError(f"{error}; or state --sides rigid for the interface alone") from None
     changes = computed.mesh_changes
-    error = max(map(abs, changes.values())), "1", _describe_mesh_changes(changes)
+    mesh_error = max(map(abs, changes.values())), "1", _describe_mesh_changes(changes)
     facts = joint_facts(computed.parameter_file, bolted_plates.preload)
-    return NewJoint(computed.parameter_file, facts | {"mesh_error": error})
+    return NewJoint(computed.parameter_file, facts | {"mesh_error": mesh_error})
 
 
 def joint_facts(parameter_file: ParameterFile, preload: float) -> JointFacts:
