@@ -26,6 +26,8 @@ ELEMENT_SIZE_GROWTH = 0.35
 """Increase of twice the element size over the distance from the hole [1]."""
 ELEMENTS_THROUGH_THICKNESS = 2
 """Number of elements through the thickness of the layer at the contact, at refinement 1."""
+MAX_COUNT_REDUCTION = 0.3
+"""Largest fraction by which the number of graded elements is rounded down [1]."""
 LAYER_GROWTH = 2.5
 """Ratio of the heights of two successive elements below a rigid bolt head [1]."""
 
@@ -230,7 +232,8 @@ def graded_levels(length: float, first_size: float, growth: float) -> Array:
 
     Returns the levels (k + 1) [m] from 0 to `length`; the first size is near `first_size` [m].
     """
-    count = max(round(np.log1p((growth - 1.0) * length / first_size) / np.log(growth)), 1)
+    exact_count = float(np.log1p((growth - 1.0) * length / first_size) / np.log(growth))
+    count = max(int(np.ceil(exact_count - MAX_COUNT_REDUCTION)), 1)
     levels = np.cumsum(np.append(0.0, growth ** np.arange(count)))
     return np.asarray(length * levels / levels[-1])
 
