@@ -12,7 +12,7 @@ from .model import LAG_PARAMETERS, InputSource, SystemComponent, SystemModel
 MIN_COMMUNICATION_INTERVAL = 1e-3
 """Smallest communication step [s] of the default experiment: the implicit step needs no smaller one."""
 ARM_TOLERANCE = 1e-6
-"""Tolerance of an arm [1]: oscillations are slow compared with the prescribed motion, which sets the scale."""
+"""Tolerance of an arm [1]: the prescribed motion, which sets the scale, is fast beside the oscillation."""
 
 
 def assemble_system(system: System) -> SystemModel:
