@@ -333,7 +333,11 @@ def test_validate_as_json(run):
         assert {"paper", "id", "unit", "value", "computed", "error", "tolerance", "role"} <= set(row)
         assert row["role"] in reference.ROLES
         assert isinstance(row["printed"], bool)
-        assert (row["guess"] is None) == (row["nearer"] is None) == (row["role"] not in reference.GUESS_ROLES)
+        assert (
+            (row["guess"] is None)
+            == (row["nearer"] is None)
+            == (row["role"] not in reference.ROLES_WITH_TRIVIAL_GUESS)
+        )
         if not isinstance(row["value"], bool):
             error = row["computed"] - row["value"]
             error = error if row["absolute"] else error / abs(row["value"])

@@ -11,8 +11,8 @@ from jointfmu_tools.studies.published.calibration import calibrate
 from jointfmu_tools.studies.published.computed import load_published_numbers
 from jointfmu_tools.studies.published.reference import (
     CALIBRATION_TOLERANCE,
-    GUESS_ROLES,
     ROLES,
+    ROLES_WITH_TRIVIAL_GUESS,
     UNTESTED_ROLES,
     Guess,
     PublishedPoint,
@@ -75,7 +75,7 @@ def test_points_say_where_they_stand():
         assert p.quantity in OBSERVABLES
         assert any(word in p.place for word in ("section", "Eq", "Table", "conclusion", "yield")), p.id
         assert p.absolute or p.unit != "%", p.id  # a change in per cent is off by percentage points
-        assert (p.guess is not None) == (p.role in GUESS_ROLES), p.id
+        assert (p.guess is not None) == (p.role in ROLES_WITH_TRIVIAL_GUESS), p.id
         if p.role == "calibration":
             assert p.tolerance == CALIBRATION_TOLERANCE
         elif p.role != "claim":
@@ -315,7 +315,9 @@ def test_counts(rows):
     assert found.roles == {role: sum(p.role == role for p in ALL) for role in ROLES} == found.met
     assert found.numbers == found.printed + found.derived == len(ALL) - found.roles["claim"]
     assert found.printed == len(PRINTED)
-    assert found.guessed == {role: n if role in GUESS_ROLES else 0 for role, n in found.roles.items()}
+    assert found.guessed == {
+        role: n if role in ROLES_WITH_TRIVIAL_GUESS else 0 for role, n in found.roles.items()
+    }
     assert found.nearer == {
         role: sum(r.nearer_estimate == "law" and r.point.role == role for r in rows) for role in ROLES
     }
@@ -459,7 +461,7 @@ def test_computed_values_follow_the_calibrated_ones(rows, joint, name):
                 moved.add(row.point.role)
     assert "calibration" in moved
     assert (
-        joint == "bolted_joint" or moved & set(GUESS_ROLES) or "circular" in moved
+        joint == "bolted_joint" or moved & set(ROLES_WITH_TRIVIAL_GUESS) or "circular" in moved
     )  # Zhao's two are both fitted
 
 

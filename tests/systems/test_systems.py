@@ -1014,8 +1014,8 @@ def test_the_struck_column_rings_down_by_its_friction(built: Path) -> None:
     (pulled,) = decays.simulate_decays(
         column,
         built / "fmi2",
-        column.vibration_test.slip_deflection.deflection,
-        [column.vibration_test.slip_deflection.load],
+        column.vibration_test.deflection_for_slip.deflection,
+        [column.vibration_test.deflection_for_slip.load],
     )
     order = np.argsort(pulled.amplitude)
     seen = struck.amplitude > 1.2e-7

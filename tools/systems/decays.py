@@ -73,7 +73,8 @@ def simulate_example_decays(folder: Path) -> dict[str, list[Decay]]:
     folder : folder of the FMUs (FMI 2.0)
     """
     pulls = [
-        (name, joint, joint.vibration_test.slip_deflection) for name, joint in find_vibrating_joints().items()
+        (name, joint, joint.vibration_test.deflection_for_slip)
+        for name, joint in find_vibrating_joints().items()
     ]
     return {name: simulate_decays(joint, folder, pull.deflection, [pull.load]) for name, joint, pull in pulls}
 

@@ -136,7 +136,7 @@ class VibrationTest:
     deflection_axis         : plot axis of the deflection
     support_description     : how the body is held, for the report
     stiffness_output        : variable of the joint that is the stiffness for the motion of the body
-    slip_deflection         : initial deflection that makes the joint slip
+    deflection_for_slip         : initial deflection that makes the joint slip
     frictionless_parameters : {parameter: value} of the joint without friction, which adds stiffness at small
         amplitudes
     """
@@ -154,7 +154,7 @@ class VibrationTest:
     deflection_axis: PlotAxis
     support_description: str
     stiffness_output: str
-    slip_deflection: SlipDeflection
+    deflection_for_slip: SlipDeflection
     frictionless_parameters: Mapping[str, float] = field(default_factory=dict)
 
 

@@ -90,7 +90,7 @@ class Curve:
 
     @property
     def closing_end_load(self) -> float:
-        """Load at the end of the closing of the contact, where the displacement is zero."""
+        """Load at zero displacement. Below it the table closes the contact smoothly, from load 0 on."""
         return float(self.load[np.searchsorted(self.displacement, 0.0)])
 
     @property

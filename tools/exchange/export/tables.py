@@ -79,12 +79,12 @@ def fit_row_limit(
     ]
     found: dict[int, LoadTable] = {}
 
-    def fits(i: int) -> bool:
+    def is_short_enough(i: int) -> bool:
         """Whether the table with error number i has at most `max_rows` rows."""
         found[i] = tabulate(errors[i])
         return len(found[i].rows) <= max_rows
 
-    i = bisect_left(range(len(errors)), True, lo=1, key=fits)
+    i = bisect_left(range(len(errors)), True, lo=1, key=is_short_enough)
     if i == len(errors):
         raise ValueError(f"no table with an error below {MAX_TABLE_ERROR:g} has at most {max_rows} rows")
     return float(f"{errors[i]:.2g}"), found[i]

@@ -115,10 +115,10 @@ def decimate_curve(
         (0.0, 0.0) if reference_node < 0 else (curve.load[reference_node], curve.stiffness[reference_node])
     )
 
-    def is_reproduced_by_quintic(start_node: int, end_node: int) -> bool:
+    def is_reproduced_by_quintic(segment_start_node: int, segment_end_node: int) -> bool:
         """Whether one quintic between two nodes reproduces the curve within TABLE_TOLERANCE."""
-        accurate = _segment_error(curve, start_node, end_node, floor) <= TABLE_TOLERANCE
-        return accurate and (segment_fits is None or segment_fits(start_node, end_node))
+        accurate = _segment_error(curve, segment_start_node, segment_end_node, floor) <= TABLE_TOLERANCE
+        return accurate and (segment_fits is None or segment_fits(segment_start_node, segment_end_node))
 
     index = decimate_table(stops, is_reproduced_by_quintic)
     worst = max(_segment_error(curve, i, j, floor) for i, j in pairwise(index.tolist()))
@@ -128,20 +128,22 @@ def decimate_curve(
     return InterpolationTable(np.column_stack(columns), worst)
 
 
-def _segment_error(curve: Curve, start_node: int, end_node: int, min_reference: tuple[float, float]) -> float:
+def _segment_error(
+    curve: Curve, segment_start_node: int, segment_end_node: int, min_reference: tuple[float, float]
+) -> float:
     """Largest relative error of load and stiffness if one quintic replaces a curve between two nodes.
 
     min_reference : smallest load and stiffness to which the errors are relative
     """
-    ends = [start_node, end_node]
+    ends = [segment_start_node, segment_end_node]
     quintic = Curve(
         curve.displacement[ends],
         curve.load[ends],
         curve.stiffness[ends],
-        curve.stiffness_slope_start[start_node : start_node + 1],
-        curve.stiffness_slope_end[end_node - 1 : end_node],
+        curve.stiffness_slope_start[segment_start_node : segment_start_node + 1],
+        curve.stiffness_slope_end[segment_end_node - 1 : segment_end_node],
     )
-    x = curve.displacement[start_node : end_node + 1]
+    x = curve.displacement[segment_start_node : segment_end_node + 1]
     points = np.concatenate([x[1:-1], (x[:-1, None] + np.diff(x)[:, None] * _ERROR_SAMPLE_FRACTIONS).ravel()])
     worst = 0.0
     for exact, approximate, reference in zip(

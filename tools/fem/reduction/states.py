@@ -191,7 +191,7 @@ class CellwiseJoint:
         """Pressure (n) [Pa] on the contact cells of the preloaded joint."""
         return self.reduced_joint.curve.derivatives(self.preload_approach, 0)[0]
 
-    def cell_forces(self, displacements: Array) -> tuple[Array, "CellTangentStiffness"]:
+    def contact_cell_forces(self, displacements: Array) -> tuple[Array, "CellTangentStiffness"]:
         """Forces (3 n + b) [N] at displacements (3 n + b) [m] of cells and bolts, and their tangent.
 
         Forces are changes from the preloaded joint. The order is: opening (n), displacement along x (n),
@@ -222,7 +222,7 @@ class CellwiseJoint:
 
     def stiffness(self) -> Array:
         """Stiffness (6, 6) [N/m, N, N.m] of the preloaded joint between its attachments."""
-        tangent = self.cell_forces(np.zeros(len(self.rigid_displacement)))[1]
+        tangent = self.contact_cell_forces(np.zeros(len(self.rigid_displacement)))[1]
         displacement = tangent.solve(self.compliance, self.rigid_displacement)
         return np.asarray(self.rigid_displacement.T @ tangent.multiply(displacement))
 
@@ -233,13 +233,13 @@ class CellwiseJoint:
         """
         prescribed = self.rigid_displacement @ motion
         g = np.zeros_like(prescribed)
-        force, tangent = self.cell_forces(g)
+        force, tangent = self.contact_cell_forces(g)
         residual = g + self.compliance @ force - prescribed
         for _ in range(MAX_NEWTON_STEPS):
             step = -tangent.solve(self.compliance, residual)
             for halvings in range(5):
                 g_trial = g + 0.5**halvings * step
-                force, tangent = self.cell_forces(g_trial)
+                force, tangent = self.contact_cell_forces(g_trial)
                 trial_residual = g_trial + self.compliance @ force - prescribed
                 if np.linalg.norm(trial_residual) < np.linalg.norm(residual):
                     break

@@ -222,7 +222,10 @@ def _add_roughness(
 
 
 def _add_gamma(parameter_sheet: ParameterSheet, faces: tuple[Face, Face], h: float) -> None:
-    """Add gamma of Gaussian heights, with the range that the skewness of the finishes gives."""
+    """Add the parameter gamma of the law `roughness`, stiffness = pressure/(gamma h), to a parameter sheet.
+
+    The value is that of Gaussian heights; its range follows from the skewness of the finishes.
+    """
     text = "boundary elements: 0.40 to 0.48 (docs/validity.md)"
     ends = [face.skewness for face in faces if face.skewness]
     if len(ends) < len(faces):

@@ -57,7 +57,7 @@ def max_moment_ratio(joint: BoltedInterface, normalised_pressure: PressureDistri
 
 
 def initial_load_cases(moment_ratio_limit: float) -> list[LoadCase]:
-    """Load cases from which the selection of points starts.
+    """Load cases at the start of a reduction: nodes are selected for these, others are added if they err.
 
     moment_ratio_limit : largest moment over the moment that unloads a row of bolts [1]
     """
@@ -123,9 +123,9 @@ MAX_NODE_GROUPS = 4096
 
 @dataclass(frozen=True, slots=True)
 class LoadCaseSums:
-    """Sums of the 9 functions of `SumFunctions` over a pressure field, in m load cases.
+    """Sums over the nodes of a pressure field, in m load cases, divided by their scale.
 
-    They are relative to their scale.
+    There are 9 sums, in the order of `SumFunctions`: force, stiffness and their first and second moments.
 
     load_cases : (m) load cases
     opening    : (m) [m] normal motion
@@ -285,7 +285,7 @@ class SumFunctions:
     def function_values(
         self, normalised_pressure: PressureDistribution, load_case_sums: LoadCaseSums
     ) -> Array:
-        """Values (c, 9 m) of the 9 functions in m load cases at c nodes, over the scale of their sum."""
+        """Contributions (c, 9 m) of c nodes to the 9 sums in m load cases, over the scale of each sum."""
         return self.selected_function_values(
             normalised_pressure, load_case_sums, np.arange(load_case_sums.sum_scales.size)
         )

@@ -189,7 +189,11 @@ def fit_measurement(
         nuisance_count=data.nuisance_count,
         tolerance=SECOND_FIT_TOLERANCE,
     )
-    return (exchange.restore_solution(solution, original) if exchange else solution), scale, measurement
+    return (
+        (exchange.express_in_original_unknowns(solution, original) if exchange else solution),
+        scale,
+        measurement,
+    )
 
 
 def _clip_to_bounds(unknown: Unknown, value: float) -> float:

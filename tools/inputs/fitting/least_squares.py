@@ -345,7 +345,7 @@ class UnknownExchange:
             )
         return {**rest, self.exchanged_name: float(np.exp(high))}
 
-    def restore_solution(self, solution: Solution, unknowns: Mapping[str, Unknown]) -> Solution:
+    def express_in_original_unknowns(self, solution: Solution, unknowns: Mapping[str, Unknown]) -> Solution:
         """Transform a solution with the derived quantity into a solution with the original unknowns."""
         restored = self.restore_unknowns(solution.values, unknowns[self.exchanged_name].start_value)
         values = {name: restored[name] for name in unknowns}

@@ -316,9 +316,11 @@ def _set_ticks(axis: Any) -> None:
 
 
 def _plot_data(result: FractalResult) -> tuple[Array, Array, Array]:
-    """Abscissa, data and fitted law of the plot, corrected for the smoothing over scales.
+    """Abscissa, measured values and fitted law of the plot: structure function, or power spectral density.
 
-    The structure function is the one without tilt, V/(4 - 4^H).
+    Both are plotted as they are before the smoothing over neighbouring lags or wavelengths. The structure
+    function is V/(4 - 4^H), with the second difference V of the heights, from which a tilt of the surface
+    cancels.
     """
     series, fit = result.series, result.fit
     expected = series.expected_value(fit.H)

@@ -208,10 +208,11 @@ HANN_CORRELATED_MODES = 35.0 / 18.0
 
 
 def power_spectrum(heights: Heights, direction: str) -> ScaleSeries:
-    """Power spectral density of a profile, of the lines along x or y of a map, or radial ("areal").
+    """Frequency times the one-sided power spectral density: Phi [m2], the variance per ln(frequency).
 
-    Phi = frequency times one-sided density, with a Hann window, smoothed over ln(frequency) with a Gaussian
-    kernel. Wavelengths are from 5 spacings to a third of the length. `heights` must have no missing points.
+    Of a profile, of the lines along x or y of a map, or averaged over all directions ("areal"). With a Hann
+    window, smoothed over ln(frequency) with a Gaussian kernel. Wavelengths are from 5 spacings to a third of
+    the length. `heights` must have no missing points.
     """
     z = np.atleast_2d(heights.z)
     if direction == "areal" and isinstance(heights, ArealMap):

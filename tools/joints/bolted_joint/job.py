@@ -112,7 +112,7 @@ VIBRATION_TEST = VibrationTest(
     deflection_axis=PlotAxis("motion", "um", 1e6),
     support_description="in shear",
     stiffness_output="K_xx",
-    slip_deflection=SlipDeflection(15e3, 8e-7, "half of the friction limit"),
+    deflection_for_slip=SlipDeflection(15e3, 8e-7, "half of the friction limit"),
 )
 """System of the main job in which a bolted joint vibrates."""
 

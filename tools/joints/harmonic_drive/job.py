@@ -225,7 +225,7 @@ VIBRATION_TEST = VibrationTest(
     deflection_axis=PlotAxis("wind-up", "urad", 1e6),
     support_description="motor held",
     stiffness_output="K_WTS",
-    slip_deflection=SlipDeflection(0.0, 5e-4, "three lengths of its hysteresis"),
+    deflection_for_slip=SlipDeflection(0.0, 5e-4, "three lengths of its hysteresis"),
     frictionless_parameters={"hysteresis_loss": 0.0},
 )
 """System of the main job in which a harmonic drive vibrates."""

@@ -77,13 +77,13 @@ def _ring_down_figure(name: str, vibrating_joint: VibratingJoint, decays: Sequen
     body, moving, (point, *_) = vibrating_joint.vibration_test, vibrating_joint.moving_body.name, decays
     has_law = point.half_eta_loop is not None
     deflection = (
-        f"{body.deflection_axis.display_factor * body.slip_deflection.deflection:g} "
+        f"{body.deflection_axis.display_factor * body.deflection_for_slip.deflection:g} "
         f"{format_unit(body.deflection_axis.unit)}"
     )
     return Figure(
         f"In a system: free decay of the {name.replace('_', ' ')}",
         f"The {moving}, {body.support_description}, is released from a deflection of {deflection} "
-        f"({body.slip_deflection.doc}) at "
+        f"({body.deflection_for_slip.doc}) at "
         f"{body.load_axis.display_factor * point.load:g} {body.load_axis.unit}. Circles: frequency and "
         "damping "
         "ratio of the "

@@ -20,7 +20,7 @@ from scipy.stats import norm
 
 Parameters = Mapping[str, Any]
 """Values of the parameters of a law, by structured name."""
-Spot = Callable[[float], float]
+SpotFunction = Callable[[float], float]
 """Quantity of one contact spot as a function of its area [m2]."""
 
 _QUADRATURE = {"epsabs": 0.0, "epsrel": 1e-12, "limit": 400}
@@ -42,17 +42,21 @@ def _bodies(p: Parameters) -> tuple[float, float]:
     )
 
 
-def _sum_spots(spot: Spot, count: Spot, edges: Sequence[float]) -> float:
-    """Sum of a quantity over spots: integral of spot(a) count(a) over ln a, between successive areas [m2]."""
+def _sum_spots(spot_quantity: SpotFunction, count: SpotFunction, edges: Sequence[float]) -> float:
+    """Sum over spots: integral of spot_quantity(a) count(a) over ln a, between successive areas [m2]."""
     total = 0.0
     for low, high in pairwise(edges):
         if high > low:
-            total += quad(lambda t: spot(exp(t)) * count(exp(t)), log(low), log(high), **_QUADRATURE)[0]
+            total += quad(
+                lambda t: spot_quantity(exp(t)) * count(exp(t)), log(low), log(high), **_QUADRATURE
+            )[0]
     return total
 
 
-def _stick_sum(spot: Spot, x: Spot, count: Spot, low: float, high: float) -> float:
-    """Sum of spot(a) (1 - x(a))^(1/3) for spots with x < 1; x decreases with the area."""
+def _stick_sum(
+    spot_quantity: SpotFunction, x: SpotFunction, count: SpotFunction, low: float, high: float
+) -> float:
+    """Sum of spot_quantity(a) (1 - x(a))^(1/3) for spots with x < 1; x decreases with the area."""
     if high <= low or x(high) >= 1.0:
         return 0.0
     onset = low if x(low) <= 1.0 else exp(brentq(lambda t: x(exp(t)) - 1.0, log(low), log(high), xtol=1e-14))
@@ -60,7 +64,7 @@ def _stick_sum(spot: Spot, x: Spot, count: Spot, low: float, high: float) -> flo
     def integrand(y: float) -> float:  # ln a = ln onset + y^3 removes the cube root at the onset
         """Integrand after a substitution that removes the cube root at the end of slip."""
         a = onset * exp(y**3)
-        return 3.0 * y**2 * spot(a) * max(1.0 - x(a), 0.0) ** (1.0 / 3.0) * count(a)
+        return 3.0 * y**2 * spot_quantity(a) * max(1.0 - x(a), 0.0) ** (1.0 / 3.0) * count(a)
 
     return float(quad(integrand, 0.0, log(high / onset) ** (1.0 / 3.0), **_QUADRATURE)[0])
 
@@ -117,13 +121,13 @@ def _zhao2018(p: Parameters, largest: float) -> dict[str, float]:
 
     end = min(critical, largest)
 
-    def plastic_sum(spot: Spot, exponent: float) -> float:
+    def plastic_sum(spot_quantity: SpotFunction, exponent: float) -> float:
         """Sum of a quantity over the plastic spots."""
-        return _sum_spots(spot, count, [end * exp(-_NEGLIGIBLE_LOG / exponent), end])
+        return _sum_spots(spot_quantity, count, [end * exp(-_NEGLIGIBLE_LOG / exponent), end])
 
-    def elastic_sum(spot: Spot) -> float:
+    def elastic_sum(spot_quantity: SpotFunction) -> float:
         """Sum of a quantity over the elastic spots."""
-        return _sum_spots(spot, count, [critical, largest])
+        return _sum_spots(spot_quantity, count, [critical, largest])
 
     load = plastic_sum(lambda a: H * a, 1.0 - D / 2.0) + elastic_sum(elastic)
     area = plastic_sum(lambda a: a, 1.0 - D / 2.0) + elastic_sum(lambda a: a / 2.0)
@@ -191,14 +195,14 @@ def _hu2023(p: Parameters, largest: float) -> dict[str, float]:
         """Tangential stiffness [N/m] of a spot of area s without slip."""
         return 8.0 * shear * sqrt(s / pi)
 
-    def slip(spot_load: Spot) -> Spot:
+    def slip(spot_load: SpotFunction) -> SpotFunction:
         """Function of the spot area: traction ratio t/(mu f) [1] under the shear traction."""
         return lambda s: p["shear_traction"] * s / (p["mu"] * spot_load(s))
 
-    def from_zero(spot: Spot, exponent: float) -> float:
+    def from_zero(spot_quantity: SpotFunction, exponent: float) -> float:
         """Sum of a quantity over all spots, from zero area on."""
         low = min(s_ec, largest) * exp(-_NEGLIGIBLE_LOG / (exponent + 0.5 - D / 2.0))
-        return _sum_spots(spot, count, [low, *(min(e, largest) for e in (s_ec, s1, s2)), largest])
+        return _sum_spots(spot_quantity, count, [low, *(min(e, largest) for e in (s_ec, s1, s2)), largest])
 
     area = from_zero(lambda s: s, 1.0)
     if p["reading"] == "printed":  # Eq. 30: the antiderivative at s_l, that is minus the integral beyond it
@@ -261,7 +265,7 @@ def _yu2022(p: Parameters, largest: float) -> dict[str, float]:
         return a / (f1 * pi * radius(a) * first_yield(a))
 
     def edge(limit: float) -> float:
-        """Spot area [m2] at which `ratio` reaches a limit: the end of a stage."""
+        """SpotFunction area [m2] at which `ratio` reaches a limit: the end of a stage."""
         return exp(brentq(lambda t: log(ratio(exp(t)) / limit), -250.0, 250.0, xtol=1e-13))
 
     geometric = p["plastic_area"] == "geometric"

@@ -25,7 +25,7 @@ paper are no test of the model.
 """
 UNTESTED_ROLES = ("calibration", "circular", "contradiction")
 """Roles of numbers that are no test of the model."""
-GUESS_ROLES = ("interpolation", "prediction")
+ROLES_WITH_TRIVIAL_GUESS = ("interpolation", "prediction")
 """Roles of numbers that are also compared with a trivial guess."""
 CALIBRATION_TOLERANCE = 1e-6
 """Relative tolerance of a calibration point [1]: the fits are exact apart from rounding."""
@@ -113,9 +113,10 @@ class PublishedPoint:
             raise ValueError(f"{where}: role = {self.role!r}, allowed are {', '.join(ROLES)}")
         if (self.role == "claim") != isinstance(self.value, bool):
             raise ValueError(f"{where}: value = {self.value!r}, a claim is true or false, others numbers")
-        if self.guess and self.role not in GUESS_ROLES:
+        if self.guess and self.role not in ROLES_WITH_TRIVIAL_GUESS:
             raise ValueError(
-                f"{where}: role = {self.role!r} has a guess, allowed are {', '.join(GUESS_ROLES)}"
+                f"{where}: role = {self.role!r} has a guess, "
+                f"allowed are {', '.join(ROLES_WITH_TRIVIAL_GUESS)}"
             )
 
 

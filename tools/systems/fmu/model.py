@@ -154,7 +154,7 @@ class SystemModel:
         """Make the parameter file of the system from those of all components."""
 
         def collect(attribute: str) -> dict[str, Any]:
-            """{name in the system: value} of one attribute of all parameter files."""
+            """{name in the system: entry} of a mapping of all parameter files, as values or sources."""
             return {
                 p.full_name(name): value
                 for p in self.components

@@ -179,7 +179,10 @@ class RoughnessLaw(HardnessLimitedLaw, RoughSurfaces, CheckedParameters):
 
 
 def onset_pressure(law: RoughnessLaw) -> Number:
-    """Lowest pressure of the law, p_1 = STIFFNESS_ONSET_LOAD_RATIO E* h longest_wave/A_0 [Pa], at u = 0."""
+    """Lowest pressure [Pa] at which the law is valid; below it the stiffness begins from 0.
+
+    p_1 = STIFFNESS_ONSET_LOAD_RATIO E* h longest_wave/A_0, where u = ln(p/p_1) is 0.
+    """
     return (
         STIFFNESS_ONSET_LOAD_RATIO
         * contact_modulus(law.side1, law.side2)

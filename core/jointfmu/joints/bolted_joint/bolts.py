@@ -64,7 +64,13 @@ class BoltSprings:
         return np.asarray(np.maximum(working_preload(joint, preload) + moment * self.force_per_moment, 0.0))
 
     def head_gap(self, preload_force: Array, elongation: Array) -> Array:
-        """Gap h (b) [m] under the heads, from bolt forces at tightening (b) [N] and elongations (b) [m]."""
+        """Gap h (b) [m] between head and member; 0 while the bolt is under tension.
+
+        The head lifts off when the joint shortens by more than the elongation of the bolt at tightening.
+
+        preload_force : (b) [N] force of each bolt at tightening
+        elongation    : (b) [m] of the clamped length since tightening
+        """
         if self.stiffness == 0.0:
             return np.zeros_like(elongation)
         return np.maximum(-(preload_force + self.stiffness * elongation), 0.0) / self.stiffness

@@ -128,7 +128,11 @@ class JointAssembly:
 
     @cached_property
     def tangential_jacobian(self) -> Array:
-        """Jacobian G (3, m, 6 + k) [1, m] of the tangential displacement of the patches."""
+        """Jacobian G (3, m, 6 + k) [1, m] of the tangential displacement of the patches.
+
+        Along x, along y, and rotation times the patch radius; by the relative displacement q (6) and the
+        modal coordinates a (k).
+        """
         rigid = tangential_jacobian(self.contact.patches)
         return np.concatenate([rigid, self.modes.patch_displacement], axis=-1)
 
@@ -279,9 +283,10 @@ class LoadStep:
         return np.asarray(np.where(closed, pressure / np.where(closed, stiffness, 1.0), 0.0))
 
     def traction_derivatives(self, trial_state: TrialState) -> Array:
-        """Derivatives (m, 3, 4) [Pa/m] of the friction tractions by displacement (3) and opening (1).
+        """Derivatives (m, 3, 4) [Pa/m] of the friction tractions, by finite differences.
 
-        Finite differences.
+        Three tractions of a patch (along x, along y, torsion about its centre) by the three tangential
+        displacements and the opening.
         """
         first = self.assembly.contact.pressure_curve.displacement[0]
         size = TRACTION_DIFFERENCE_STEP * float(

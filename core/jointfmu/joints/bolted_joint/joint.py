@@ -378,10 +378,11 @@ class BoltedJointSpring:
         )
 
     def first_loading_work(self, pressure: Array) -> tuple[Array, Array]:
-        """Plastic and elastic work [J] of the whole area at pressures (...) [Pa] (Zhao 2018, Eqs. 16, 18).
+        """Plastic and elastic work [J] when virgin surfaces are loaded to pressures (...) [Pa].
 
-        Below the pressure at which the contact has closed the values at that pressure are used: the law has
-        hardly an elastic spot there.
+        Work of the complete interface (Zhao 2018, Eqs. 16, 18). Below the pressure at zero approach, where
+        the tabulated curve has its closing end, the values at that pressure are used: the law has hardly an
+        elastic spot there.
         """
         spots = self.joint.spot_distribution()
         u = solve_largest_spot(self.joint, np.maximum(pressure, self.curve.closing_end_load))

@@ -312,13 +312,21 @@ def _friction_utilization(contact_sums: Mapping[str, Number], mu: Number) -> Num
 
 
 def _damping_forces(
-    area: Number, contact_sums: Mapping[str, Number], C_t: Number, C_n: Number, rates: Sequence[Number]
+    area: Number,
+    contact_sums: Mapping[str, Number],
+    tangential_damping: Number,
+    normal_damping: Number,
+    rates: Sequence[Number],
 ) -> list[Number]:
-    """Forces and moments (6) [N, N.m] of dashpots, distributed over the contact like its stiffness."""
+    """Forces and moments (6) [N, N.m] of dashpots, distributed over the contact like its stiffness.
+
+    tangential_damping, normal_damping : C_t, C_n [N.s/m] of the complete contact
+    rates                              : (6) velocities [m/s] and angular velocities [rad/s] of side 2
+    """
     v_x, v_y, v_z, w_x, w_y, w_z = rates
     K, K_x, K_y = (contact_sums[name] for name in ("stiffness", "stiffness_x", "stiffness_y"))
     K_yy, K_xx, K_xy = (contact_sums[name] for name in ("about_x", "about_y", "about_xy"))
-    t, n = -_ratio_or_zero(C_t, K), -_ratio_or_zero(C_n, K)
+    t, n = -_ratio_or_zero(tangential_damping, K), -_ratio_or_zero(normal_damping, K)
     return [
         t * (K * v_x - K_y * w_z),
         t * (K * v_y + K_x * w_z),

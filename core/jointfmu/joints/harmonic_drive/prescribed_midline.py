@@ -165,7 +165,11 @@ class CatalogueDriveParameters(PrescribedDriveParameters):
 
     @property
     def _min_first_stiffness(self) -> Number:
-        """Stiffness K1 [N.m/rad] below which corners of the default half-width, or smaller ones, overlap."""
+        """Smallest stiffness K1 [N.m/rad] at which the rounded corners at T1 and T2 do not overlap.
+
+        The half-width of a corner is a share of its wind-up, which grows as K1 falls; here the stated share,
+        at most the default one.
+        """
         corner = np.minimum(self.corner, DEFAULT_CORNER_HALF_WIDTH_OVER_WIND_UP)
         torque_ratio = self.T1 / np.maximum(self.T2 - self.T1, self.T1)
         return 2.0 * corner / (1.0 - corner) * self.K2 * torque_ratio
