@@ -222,7 +222,7 @@ def test_a_law_is_judged_as_by_the_command(capsys):
     [
         (lambda: jointfmu.drive("CSG-99"), "'CSG-99' is unknown"),
         (lambda: jointfmu.drive(ratio=100), "K1, K2, K3, T1, T2 missing"),
-        (lambda: jointfmu.drive("CSG-25-100", efficiency=1.5), r"efficiency = .1.5. is outside \(0, 1\)"),
+        (lambda: jointfmu.drive("CSG-25-100", efficiency=1.5), r"efficiency = .1.5. is outside \[0.1, 1\)"),
         (lambda: jointfmu.bolted_joint(**PLATE | {"grip": -40}), r"grip = '-40' is outside \(0, inf\)"),
         (lambda: jointfmu.bolted_joint(**PLATE | {"head": "round"}), "head = 'round', allowed are"),
         (lambda: jointfmu.bolted_joint(**PLATE | {"preload": (1, 2)}), r"preload = \(1, 2\) are 2 values"),

@@ -66,7 +66,7 @@ def test_a_parameter_file_in_place_of_another_subject(drive_file, capsys):
 
 def test_a_wrong_stiffness_is_looked_for_where_corners_overlap(drive_file, capsys):
     drive_file.write_text(drive_file.read_text(encoding="utf-8").replace("value = 4700.0", "value = 67.0"))
-    assert "check first that K1, K2, T1 and T2 are right" in refused_line(capsys, "report", drive_file)
+    assert "check the value and the unit of K1" in refused_line(capsys, "report", drive_file)
 
 
 def test_a_similar_command_is_suggested(capsys):

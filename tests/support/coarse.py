@@ -23,7 +23,7 @@ def elements(of: Any, refinement: float) -> Any:
     own = of.from_assembly
     count = len(signature(own).parameters) - 1  # without the refinement, which is the last one
 
-    def from_assembly(*arguments: Any) -> Any:
+    def from_assembly(*arguments: Any, **_: Any) -> Any:
         return own(*arguments[:count], refinement)
 
     return _replaced(of, "from_assembly", from_assembly)
