@@ -54,7 +54,10 @@ def protect_references(method: Callable[..., Result]) -> Callable[..., Result]:
 
     @wraps(method)
     def call_protected(self: Any, *args: Any) -> Result:
-        """Call the method; on an exception, add the references that pythonfmu will release."""
+        """Call the wrapped method. After an exception, count up Python's references to three objects.
+
+        pythonfmu releases these objects once more than it holds them if a method raises.
+        """
         try:
             return method(self, *args)
         except Exception:

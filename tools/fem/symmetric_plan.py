@@ -199,7 +199,13 @@ def _divide_circles(gmsh_model: object, bolts: Array, radii: tuple[float, float]
 
 
 def _make_rings(quadrilaterals: Array, bolts: Array, radii: Array) -> Array:
-    """Quadrilaterals (2, 4, m) [m] between successive circles, on the edges at the largest circle."""
+    """Rings of quadrilaterals (2, 4, m) [m] around bolts, between successive circles.
+
+    They continue the given mesh inwards: each edge of it on the largest circle becomes a column of
+    quadrilaterals.
+
+    radii : (r) [m] of the circles, ascending
+    """
     rings = []
     ends = np.stack([quadrilaterals, np.roll(quadrilaterals, -1, axis=1)], axis=-1).reshape(2, -1, 2)
     for bolt in bolts:

@@ -329,7 +329,7 @@ class SumFunctions:
 
 
 def nodes_per_group(node_count: int) -> int:
-    """Number of neighbouring nodes in a group; the last group may have fewer."""
+    """Number of neighbouring nodes in a group, whose sums are stored; the last group may have fewer."""
     return -(-node_count // MAX_NODE_GROUPS)
 
 

@@ -287,7 +287,7 @@ class Loops:
         k = slip_step.branch_number
 
         def mean_change(samples: NDArray[np.int64], start: float) -> float:
-            """Mean force change of the law over samples, from a start motion."""
+            """Force change [N] by the law, from the start of a branch to its samples: mean of all samples."""
             return float(np.mean(law.force_change(self.motion[samples], np.full(samples.size, start))))
 
         before, after = start_motion[k - 1], start_motion[k]

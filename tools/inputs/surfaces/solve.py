@@ -24,7 +24,7 @@ MIN_SIDE_POINTS = 2 * MIN_AREAL_POINTS
 """Smallest number of points along a side, for the sub-areas."""
 MAX_ASPECT_RATIO = 4
 """Largest ratio of the long to the short side of a scan that is solved [1]."""
-SUB_AREAS = 2
+SUB_AREAS_PER_SIDE = 2
 """Number of sub-areas along each side of a scan [1], whose scatter gives the range of the stiffness."""
 MIN_CONTACT_POINTS = 16
 """Smallest number of points in contact [1] whose stiffness counts: fewer are one summit."""
@@ -128,9 +128,9 @@ def solve_stiffness(gap: ArealMap, modulus: float, hardness: float) -> SolvedSti
 
 def _sub_areas(grid: ArealMap) -> Iterator[ArealMap]:
     """Equal parts of a grid of heights, each without its tilt."""
-    rows, columns = (n // SUB_AREAS for n in grid.z.shape)
-    for i in range(SUB_AREAS):
-        for j in range(SUB_AREAS):
+    rows, columns = (n // SUB_AREAS_PER_SIDE for n in grid.z.shape)
+    for i in range(SUB_AREAS_PER_SIDE):
+        for j in range(SUB_AREAS_PER_SIDE):
             part = grid.z[i * rows : (i + 1) * rows, j * columns : (j + 1) * columns]
             plane = remove_form(ArealMap(z=part, dx=grid.dx, dy=grid.dy, name=grid.name))
             yield grid.with_heights(plane.z)

@@ -82,9 +82,10 @@ def structure_function(heights: Heights, direction: str) -> ScaleSeries:
 
 
 def _mean_square_differences(z: Array) -> tuple[Array, Array, Array]:
-    """Mean square differences of heights: lags in points, and V and S [m2] at these lags.
+    """Lags [points], and mean square of second and of first differences of the heights, V and S [m2].
 
-    They are averaged over the rows of z.
+    S(lag) is the structure function; a tilt of the surface cancels from V(lag). Both are averaged over the
+    rows of z.
     """
     lags = np.unique(np.round(np.exp(np.arange(np.log(2.0), np.log(z.shape[1] // 8), 0.08))).astype(int))
     value, raw = np.empty(lags.size), np.empty(lags.size)

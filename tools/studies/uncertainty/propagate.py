@@ -15,7 +15,14 @@ from jointfmu.quantity import Array
 
 from .journal import SOBOL_RUNS_FILE
 from .problem import UncertaintyProblem
-from .runs import IN_MEMORY_EXECUTION, Execution, Mask, SampledOutputs, SinglePrecisionArray, evaluate_runs
+from .runs import (
+    LOCAL_UNSAVED_EXECUTION,
+    Execution,
+    Mask,
+    SampledOutputs,
+    SinglePrecisionArray,
+    evaluate_runs,
+)
 from .study import RefusedSamples, draw_samples, unit_cube_points
 from .worker import JointRamp
 
@@ -67,7 +74,7 @@ class Bands:
 
 
 def compute_bands(
-    uncertainty_problem: UncertaintyProblem, points: Array, execution: Execution = IN_MEMORY_EXECUTION
+    uncertainty_problem: UncertaintyProblem, points: Array, execution: Execution = LOCAL_UNSAVED_EXECUTION
 ) -> Bands:
     """Bands (distribution along the ramp) of all outputs, from points (n, d) of the unit cube.
 
@@ -202,7 +209,7 @@ def compute_sensitivity(
     bands: Bands,
     A: Array,
     B: Array,
-    execution: Execution = IN_MEMORY_EXECUTION,
+    execution: Execution = LOCAL_UNSAVED_EXECUTION,
 ) -> Sensitivity:
     """Sobol' indices of all quantities of a joint along the load ramp.
 

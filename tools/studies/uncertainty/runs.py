@@ -36,8 +36,8 @@ class Execution:
     workers: int | None = None
 
 
-IN_MEMORY_EXECUTION = Execution()
-"""Runs on this machine that are not kept."""
+LOCAL_UNSAVED_EXECUTION = Execution()
+"""Runs on this machine, whose results are not written to a folder."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +66,7 @@ def evaluate_runs(
     runs: Sequence[Settings],
     output_names: Iterable[str],
     row_count: int,
-    execution: Execution = IN_MEMORY_EXECUTION,
+    execution: Execution = LOCAL_UNSAVED_EXECUTION,
     file_name: str = journal.RUNS_FILE,
     progress_label: str = "samples",
 ) -> SampledOutputs:

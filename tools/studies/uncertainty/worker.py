@@ -152,8 +152,8 @@ class JointRamp:
 
     loads            : load ramp (m), ascending
     load_is_relative : whether a sample of the load is a factor on the ramp; else it replaces the last load
-    reopens_joint    : whether each sample opens the joint, for parameters that the FMU does not expose; this
-        takes seconds
+    opens_joint_per_sample : whether each sample opens the joint, for parameters that the FMU does not expose;
+        this takes seconds
     load_indices     : indices of the loads that are evaluated; None: all
     study_key        : text that identifies the study
     """
@@ -161,14 +161,14 @@ class JointRamp:
     file: ParameterFile
     loads: Array
     load_is_relative: bool = False
-    reopens_joint: bool = False
+    opens_joint_per_sample: bool = False
     load_indices: Array | None = None
     study_key: str = field(default_factory=lambda: str(uuid4()))
 
     @property
     def runs_per_job(self) -> int:
         """Number of runs that a worker does at once: 1 if each run opens the joint."""
-        return 1 if self.reopens_joint else 32
+        return 1 if self.opens_joint_per_sample else 32
 
     @property
     def runs_per_process(self) -> int:
@@ -178,7 +178,7 @@ class JointRamp:
         """
         if not KINDS[self.file.joint].package.startswith("jointfmu."):
             return sys.maxsize
-        return 4 if self.reopens_joint else 512
+        return 4 if self.opens_joint_per_sample else 512
 
     def __getstate__(self) -> dict[str, Any]:
         """State for pickle: a parameter set may hold functions in its cached properties."""

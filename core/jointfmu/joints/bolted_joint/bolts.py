@@ -60,7 +60,13 @@ class BoltSprings:
         return bolt_force_per_moment(self.position) / self.bolts_per_position
 
     def preload_force(self, joint: AnyBoltedJoint, preload: float, moment: float) -> Array:
-        """Force (b) [N] of each bolt at tightening, at least 0: working preload, and share of the moment."""
+        """Force (b) [N] of each bolt in the preload state: preload after embedding, and share of a moment.
+
+        At least 0.
+
+        preload : [N] assembly preload of each bolt
+        moment  : [N.m] bending moment about x on the joint
+        """
         return np.asarray(np.maximum(working_preload(joint, preload) + moment * self.force_per_moment, 0.0))
 
     def head_gap(self, preload_force: Array, elongation: Array) -> Array:

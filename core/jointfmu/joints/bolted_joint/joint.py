@@ -40,7 +40,7 @@ from .law import (
 )
 from .outputs import (
     bolt_force_name,
-    correct_sums_for_bolt_gaps,
+    correct_sums_for_lifted_heads,
     elastic_member_sums,
     first_moments,
     joint_outputs,
@@ -302,7 +302,7 @@ class BoltedJointSpring:
         if state is not None:
             sums |= elastic_member_sums(joint, assembly, state, bolt_force, sums["loop_energy"])
         else:
-            sums |= correct_sums_for_bolt_gaps(self.bolts, joint.A_0, elongation, bolt_force, sums)
+            sums |= correct_sums_for_lifted_heads(self.bolts, joint.A_0, elongation, bolt_force, sums)
         s_rel, theta = q.reshape(2, 3).tolist()
         outputs = joint_outputs(joint, sums, s_rel, theta, inputs.rates, np.max(normal.pressure))
         if joint.has_elastic_members:

@@ -125,7 +125,7 @@ def sum_cycle_energies(
     return {"loop_work": area_share @ loss, "loop_energy": area_share @ stored}
 
 
-def correct_sums_for_bolt_gaps(
+def correct_sums_for_lifted_heads(
     bolt_springs: BoltSprings,
     nominal_area: float,
     elongation: Array,

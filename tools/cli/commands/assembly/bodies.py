@@ -105,9 +105,11 @@ def build_assembly(
     contact_field: ContactField,
     bolt_positions: Array | None,
 ) -> tuple["Assembly", list[str]]:
-    """Build the plates of a field with bolts; returns the assembly and notes about its shape.
+    """Build two plates with bolts whose contact is that of a pressure field.
 
-    bolt_positions : (b, 2) [m] in the plane of the field
+    Returns the assembly and notes about its shape.
+
+    bolt_positions : (b, 2) [m] in the plane of the pressure field
 
     Raises ValueError if positions or sizes of the bolts are missing, if heads overlap or extend beyond the
     plates, or if the plates are too thin.
