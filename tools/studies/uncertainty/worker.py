@@ -150,12 +150,12 @@ def write_slim_fmu(fmu: Path, slim_path: Path) -> None:
 class JointRamp:
     """Evaluator that computes the joint of a parameter file along a load ramp, see `RampEvaluator`.
 
-    loads            : load ramp (m), ascending
-    load_is_relative : whether a sample of the load is a factor on the ramp; else it replaces the last load
+    loads                  : load ramp (m), ascending
+    load_is_relative       : whether a sample of the load is a factor on the ramp, else it replaces the last
     opens_joint_per_sample : whether each sample opens the joint, for parameters that the FMU does not expose;
         this takes seconds
-    load_indices     : indices of the loads that are evaluated; None: all
-    study_key        : text that identifies the study
+    load_indices           : indices of the loads that are evaluated; None: all
+    study_key              : text that identifies the study
     """
 
     file: ParameterFile
