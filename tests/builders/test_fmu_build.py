@@ -290,7 +290,10 @@ def test_a_python_fmu_without_its_libraries_is_refused(
     tmp_path: Path,
 ) -> None:
     copy = tmp_path / "broken"
-    copytree(Path(pythonfmu.__file__).parent, copy / "pythonfmu", ignore=ignore_patterns("binaries"))
+    installed = Path(pythonfmu.__file__).parent
+    copytree(installed, copy / "pythonfmu", ignore=ignore_patterns("binaries"))
+    (metadata,) = installed.parent.glob("pythonfmu-*.dist-info")
+    copytree(metadata, copy / metadata.name)
     words = ["build", "GearContact", "--flavour", "python", "--out", str(tmp_path / "out")]
     with environment(PYTHONPATH=str(copy)):
         command = [sys.executable, "-m", "jointfmu", *words]

@@ -483,10 +483,10 @@ for model in MODELS.values():
 @pytest.mark.slow
 def test_two_processes_write_the_same_bytes() -> None:
     """The order of sets does not matter: the second process uses another hash seed."""
-    environment = {k: v for k, v in os.environ.items() if k != "SOURCE_DATE_EPOCH"}
+    variables = {k: v for k, v in os.environ.items() if k != "SOURCE_DATE_EPOCH"}
     run = subprocess.run(
         [sys.executable, "-c", DIGEST],
-        env=environment | {"PYTHONHASHSEED": "1"},
+        env=variables | {"PYTHONHASHSEED": "1"},
         capture_output=True,
         text=True,
         check=True,

@@ -162,7 +162,7 @@ def test_along_one_direction(library: CDLL) -> None:
         rows = rows_of(K, before, after, force)
         s = in_c(rows)
         total, rate = SliderResultant(), SliderResultant()
-        library.sliders_advance_1d(SLIDERS, byref(s), c_double(u), pointer(moved), byref(total))
+        library.sliders_advance_1d(AVX, SLIDERS, byref(s), c_double(u), pointer(moved), byref(total))
         expected = Sliders(K).advance_1d(force[0], u, before, after)
         size = 1.0 + abs(u) * float(np.sum(K))
         assert_close(moved, expected.force, size)

@@ -1106,7 +1106,7 @@ def test_ring_prints_the_steps_that_the_guide_quotes(built: Path, capsys: pytest
     (drive, late_drive), (column, late_column) = quoted
     page = (Path(__file__).parents[2] / "docs/tools/index.md").read_text(encoding="utf-8")
     assert f"{drive:.1f} and {late_drive:.2f} ms for the example drive at 5 N m" in page
-    assert f"{column:.3f} ms for the example column of 100 kg at 15 kN" in page
+    assert f"{column:.3f} ms for the shipped system of a column of 100 kg on a bolted joint at 15 kN" in page
     assert late_column == 0.0
 
 
