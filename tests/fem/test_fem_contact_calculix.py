@@ -35,7 +35,7 @@ def deck(model: ContactModel, loads: list[np.ndarray], overclosure: float) -> It
     yield "*NODE PRINT, NSET=N1\nU\n*NODE PRINT, NSET=N2\nU\n*END STEP"
 
 
-@needs("CalculiX")
+@needs("CalculiX", "gmsh")
 def test_calculix_finds_the_same_contact(tmp_path):
     other = replace(PLATE, thickness=0.02, E=7e10)
     joint = BoltedContact.from_assembly(Assembly("plates", PLATE, other, BOLTS), 0.5)
