@@ -173,11 +173,18 @@ class _WorkerPool(ProcessPoolExecutor):
         return future
 
     def kill(self) -> None:
-        """Kill all child processes of this process, and end this pool."""
+        """Kill all child processes of this process, and end this pool.
+
+        The waiting futures are cancelled first: Python 3.11 prints an error if a pool finds its processes
+        dead while a cancelled future waits.
+        """
+        manager_thread: Any = self._executor_manager_thread
+        self._leave_results_to_workers()
+        self.shutdown(wait=False, cancel_futures=True)
         for process in multiprocessing.active_children():
             process.kill()
-        self._leave_results_to_workers()
-        self.shutdown(cancel_futures=True)
+        if manager_thread is not None:
+            manager_thread.join()
 
     def _leave_results_to_workers(self) -> None:
         """Close this process's copy of the pipe's end to which the workers write.

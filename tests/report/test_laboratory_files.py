@@ -231,7 +231,7 @@ def test_a_file_with_other_numbers_is_shown(
     check_shown(shown, format_parameter_file(replace(changed, name=f"other {seed}", inputs=inputs)), tmp_path)
 
 
-@needed
+@needs("Chromium", "gmsh")
 @pytest.mark.parametrize("name", ["contact", "mesh", "drive"])
 def test_what_new_writes_without_lists_is_shown(
     shown: Browser, drawings: dict[str, str], name: str, tmp_path: Path
@@ -271,7 +271,7 @@ def test_roughnesses_make_the_height_of_the_law(shown: Browser, tmp_path: Path) 
     assert "roughness.Rq1 beside roughness.Ra1" in refusal(shown, alone + entry("Rq1", 1e-6, "m"))
 
 
-@needed
+@needs("Chromium", "gmsh")
 @pytest.mark.parametrize(
     ("name", "key"), [("whole_joint", 'sides = "elastic"'), ("interface", "plate.length = 0.08 m")]
 )
@@ -382,7 +382,7 @@ def reopen(shown: Browser, address: str) -> None:
     shown.run("laboratory.then(() => true)")
 
 
-@needed
+@needs("Chromium", "gmsh")
 @pytest.mark.parametrize("name", ["contact", "drive"])
 def test_the_address_of_an_opened_file_leads_to_its_numbers(
     shown: Browser, drawings: dict[str, str], name: str
@@ -410,7 +410,7 @@ def test_an_address_of_another_page_is_said_and_not_mixed_in(shown: Browser) -> 
     assert "fox" in shown.run("document.getElementById('done').textContent")
 
 
-@needed
+@needs("Chromium", "gmsh")
 def test_an_opened_file_is_reset_and_saved(shown: Browser, drawings: dict[str, str], tmp_path: Path) -> None:
     """The reset returns to this file; a saved file is this file with the changed values."""
     drop(shown, drawings["contact"])
