@@ -35,11 +35,11 @@ column. Near the limits of the law, terms cancel, and the numbers differ by 1e-8
 NUMBER = re.compile(r"(?<![\w.])[-+]?(?:\d+\.\d*|\.\d+|\d+)(?:[eE][-+]?\d+)?(?![\w.])")
 TOKEN = re.compile(r"\{[0-9a-f-]{36}\}")
 COARSE = """import sys
-from functools import partial
 from jointfmu_tools.cli import main
 from jointfmu_tools.fem.whole_joint import JointFiniteElements
 
-JointFiniteElements.from_assembly = partial(JointFiniteElements.from_assembly, refinement={bodies})
+mesh = JointFiniteElements.from_assembly
+JointFiniteElements.from_assembly = lambda assembly, attachment, **_: mesh(assembly, attachment, {bodies})
 sys.exit(main(sys.argv[1:]))"""
 COMMITTED = Path(__file__).resolve().parents[2] / "models" / "modelica"
 SURFACE = ["--material", "steel", "--Ra", "0.8"]

@@ -48,7 +48,7 @@ def test_every_block_of_the_readme_runs_top_to_bottom(tmp_path, few_points, ente
     """The blocks run in a clone; `.ci/run` runs the installation and the complete build in an environment of
     its own."""
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    environment = os.environ | {"URL": str(ROOT), "PATH": path}
+    variables = os.environ | {"URL": str(ROOT), "PATH": path}
     found = re.findall(r"```(sh|python)\n(.*?)```", README, flags=re.DOTALL)
     assert [language for language, _ in found] == ["sh", "sh", "python", "sh"]
     (_, clone), (_, install), *first = found
@@ -57,7 +57,7 @@ def test_every_block_of_the_readme_runs_top_to_bottom(tmp_path, few_points, ente
     for line in installs:
         assert line in (ROOT / ".ci" / "run").read_text(encoding="utf-8")
     with_nothing = clone.replace("-m venv", "-m venv --without-pip")  # which `.ci/run` puts in and uses
-    subprocess.run(["bash", "-ec", with_nothing], cwd=tmp_path, env=environment, check=True, timeout=100)
+    subprocess.run(["bash", "-ec", with_nothing], cwd=tmp_path, env=variables, check=True, timeout=100)
     work = tmp_path / "joints"
     assert (work / ".venv" / "bin" / "python").exists()
     enter(chdir(work))

@@ -36,6 +36,10 @@ from .states import approach_at_stiffness, averaging_matrix, compute_states
 
 MIN_OVER_MAX_SINGULAR_VALUE = 1e-3
 """Singular value over the largest one [1], below which a mode is left out; all states have equal energy."""
+UNIT_MOTION_WEIGHTS = 0.8 ** np.arange(6)
+"""Weights of the responses to the six unit motions [1], in the decomposition. The weights do not change the
+span of the modes. Without them, all responses of a symmetric joint would have the same energy, and the last
+bits of a processor would choose the modes."""
 OPENING_STATE_WEIGHT = 0.5
 """Weight of states with opening over the weight of states in shear alone [1], in the decomposition: the
 loss in partial slip needs more accurate modes."""
@@ -170,9 +174,8 @@ def _energy_modes(
     motions            : (s, 6) [m, rad] of side 2 in these states
     """
     linear_deformations = linear_joint.unit_motion_displacement - linear_joint.rigid_displacement
-    linear_modes, linear_forces = _decompose_orthogonally(
-        *_scale_to_unit_energy(linear_deformations, linear_joint.body_matrix @ linear_deformations)
-    )
+    responses = _scale_to_unit_energy(linear_deformations, linear_joint.body_matrix @ linear_deformations)
+    linear_modes, linear_forces = _decompose_orthogonally(*(UNIT_MOTION_WEIGHTS * f for f in responses))
     states, forces = _scale_to_unit_energy(state_deformations, state_forces)
     for _ in range(2):  # repeated Gram-Schmidt: two passes are enough
         shares = linear_modes.T @ forces
