@@ -40,6 +40,9 @@ UNIT_MOTION_WEIGHTS = 0.8 ** np.arange(6)
 """Weights of the responses to the six unit motions [1], in the decomposition. The weights do not change the
 span of the modes. Without them, all responses of a symmetric joint would have the same energy, and the last
 bits of a processor would choose the modes."""
+STATE_WEIGHT_STEP = 1e-6
+"""Difference of the weights of successive states [1], in the decomposition: in a square plate, states along x
+and along y have the same energy, see UNIT_MOTION_WEIGHTS."""
 OPENING_STATE_WEIGHT = 0.5
 """Weight of states with opening over the weight of states in shear alone [1], in the decomposition: the
 loss in partial slip needs more accurate modes."""
@@ -181,6 +184,7 @@ def _energy_modes(
         shares = linear_modes.T @ forces
         states, forces = states - linear_modes @ shares, forces - linear_forces @ shares
     weight = np.where(np.any(motions[:, 2:5], axis=1), OPENING_STATE_WEIGHT, 1.0)
+    weight *= 1.0 - STATE_WEIGHT_STEP * np.arange(weight.size)
     other_modes, _ = _decompose_orthogonally(weight * states, weight * forces)
     return np.concatenate([linear_modes, other_modes[:, : MAX_MODES - linear_modes.shape[1]]], axis=1)
 
