@@ -248,8 +248,6 @@ DURATION, COMMUNICATION_STEP, PAYLOAD = 2.0, 1e-3, 3.0
 """Simulated time [s], communication step of the FMU [s], mass at the tip [kg]."""
 ROBOT_EFFECTS = {"hysteresis_loss": 2.9e-4, "lost_motion": 2.9e-4, "friction_stribeck": 0.01, "error_2": 1e-4}
 """Parameters of all drives beyond those of the catalogue, which has friction and load loss."""
-DEFAULT_TOLERANCE = 1e-5
-"""Tolerance of the FMU if the host states none [1]."""
 MIN_REAL_TIME_RATIO, MAX_START_TIME = 20.0, 5e-3
 """Targets: simulated time over processor time, and time to initialize [s]."""
 
@@ -263,7 +261,8 @@ def print_robot(quick: bool) -> None:
     rigid, plain = spec.compile(), elastic.add_drives(spec, axes).compile()
     pose, tip = elastic.joint_positions(rigid, {"joint2": "0.7", "joint3": "0.8"}), rigid.body("flange").id
     arm = robot_system.read_arm(rigid, axes, files, pose, PAYLOAD, tip)
-    system = CompiledSystem(robot_system.make_robot_system(arm, "robot", "robot", PAYLOAD))
+    model = robot_system.make_robot_system(arm, "robot", "robot", PAYLOAD)
+    system = CompiledSystem(model)
     time = COMMUNICATION_STEP * np.arange(round(DURATION / COMMUNICATION_STEP) + 1)
     torques = {
         f"{joint.name}.tau_motor": joint.motor_load
@@ -276,7 +275,7 @@ def print_robot(quick: bool) -> None:
 
     def run(points: int) -> np.ndarray:
         inputs = {name: torque[:points] for name, torque in torques.items()}
-        return system.simulate(values, time[:points], inputs, outputs, DEFAULT_TOLERANCE)
+        return system.simulate(values, time[:points], inputs, outputs, model.tolerance)
 
     def run_mujoco() -> None:
         mujoco.mj_resetData(plain, data)

@@ -64,7 +64,7 @@ def test_the_mesh_has_the_symmetry_and_the_area_of_the_plan(assembly, mirrors, g
 @needs("gmsh")
 @pytest.mark.slow
 def test_a_body_that_ends_under_a_head_is_refused():
-    """A tapped plate may end there: no head lies on it."""
+    """Tapped plate whose edge lies below the head: both bodies are meshed with rings as wide as the head."""
     found = make_assembly((0.0,), (0.0,))
     sizes = asdict(found.side2) | {"length": 0.01}
     with pytest.raises(ValueError, match=r"an edge of a body is 5 mm from the axis of a bolt, expected at"):

@@ -19,10 +19,10 @@ def find_similar_names(name: str, known_names: Iterable[str], count: int = 3) ->
     joined = bool(re.search(r"\d{4}", wanted)) and not re.search(r"\d[\W_]\d", wanted)
     compared = r"[\W_]" if joined else "[^a-z]"
 
-    def distance(known: str) -> tuple[float, ...]:
-        known_text, wanted_text = (re.sub(compared, "", text) for text in (known.lower(), wanted))
+    def distance(known_name: str) -> tuple[float, ...]:
+        known_text, wanted_text = (re.sub(compared, "", text) for text in (known_name.lower(), wanted))
         similarity = SequenceMatcher(None, known_text, wanted_text).ratio()
-        numbers = ([float(n) for n in re.findall(r"[1-9]\d*", text)] for text in (known, wanted))
+        numbers = ([float(n) for n in re.findall(r"[1-9]\d*", text)] for text in (known_name, wanted))
         ratios = () if joined else [abs(math.log(a / b)) for a, b in zip(*numbers, strict=False)]
         return -similarity, *ratios
 

@@ -107,6 +107,11 @@ class Payload(CheckedParameters):
         "kg.m2", "moment of inertia of the payload about z through its centre", ge=0.0
     )
 
+    @classmethod
+    def at_origin(cls, mass: float) -> "Payload":
+        """Point mass [kg] at the origin of the tip body."""
+        return cls(m=mass, x=0.0, y=0.0, z=0.0, J_x=0.0, J_y=0.0, J_z=0.0)
+
     def make_body(self, tip: Frame) -> Body:
         """The payload as a body in the frame of the tip."""
         return Body(tip, self.m, (self.x, self.y, self.z), (self.J_x, self.J_y, self.J_z))

@@ -276,32 +276,11 @@ def closing_pressure(
     length = reach * p / k
     c = 0.5 * d2p * length**2 / p - 3.0 * reach + 6.0
     a, b = 4.0 - reach + c, reach - 3.0 - 2.0 * c
-    load = (
-        p
-        * displacement_over_closing_length**3
-        * (a + b * displacement_over_closing_length + c * displacement_over_closing_length**2)
-    )
-    stiffness = (
-        p
-        / length
-        * displacement_over_closing_length**2
-        * (
-            3.0 * a
-            + 4.0 * b * displacement_over_closing_length
-            + 5.0 * c * displacement_over_closing_length**2
-        )
-    )
-    slope = (
-        p
-        / length**2
-        * displacement_over_closing_length
-        * (
-            6.0 * a
-            + 12.0 * b * displacement_over_closing_length
-            + 20.0 * c * displacement_over_closing_length**2
-        )
-    )
-    return (displacement_over_closing_length - 1.0) * length, load, stiffness, slope
+    z = displacement_over_closing_length
+    load = p * z**3 * (a + b * z + c * z**2)
+    stiffness = p / length * z**2 * (3.0 * a + 4.0 * b * z + 5.0 * c * z**2)
+    slope = p / length**2 * z * (6.0 * a + 12.0 * b * z + 20.0 * c * z**2)
+    return (z - 1.0) * length, load, stiffness, slope
 
 
 def closing_length_ratio(p: Number, k: Number, d2p: Number) -> Number:

@@ -234,7 +234,8 @@ static double residual(const Equilibrium *e, const double *q, const double *moda
     dense_add_rows(use_avx, (int)data.n_bolt_elongation, bolt_force,
                    (const double(*)[N_COLUMNS])bodies->elongation_jacobian, r);
     return RELATIVE_TOLERANCE *
-           (forces + stiffness * opening * RIGID_OPENING_FORCE_FACTOR + contact->area * contact->law.closing_end_pressure);
+           (forces + stiffness * opening * RIGID_OPENING_FORCE_FACTOR +
+            contact->area * contact->law.closing_end_pressure);
 }
 
 /* Largest component [N], or a component that is not a number. */

@@ -29,7 +29,8 @@ static void slider_heights(Foundation *f, double reference)
     const double end = f->curve->end.y;
     double y[2], *h = f->height;
     curve_evaluate(f->curve, reference, 0, y);
-    const bool touches = y[0] > MIN_REFERENCE_OVER_END_LOAD * end, given = touches && y[0] < MAX_REFERENCE_OVER_END_LOAD * end;
+    const bool touches = y[0] > MIN_REFERENCE_OVER_END_LOAD * end,
+               given = touches && y[0] < MAX_REFERENCE_OVER_END_LOAD * end;
     const double load = touches ? fmin(y[0], MAX_REFERENCE_OVER_END_LOAD * end) : DEFAULT_REFERENCE_OVER_END_LOAD * end,
                  over = portable_log(end / load);
     *h++ = f->curve->start.x;
@@ -194,7 +195,8 @@ static inline bool is_small_change(const Foundation *f, int i, const PatchState 
 {
     const double change = at->approach - from->approach;
     return change == 0.0 ||
-           (keeps_contact_state(i, from, at) && fabs(change) < SMALL_APPROACH_CHANGE_OVER_INTERVAL * (f->height[i + 1] - f->height[i]));
+           (keeps_contact_state(i, from, at) &&
+            fabs(change) < SMALL_APPROACH_CHANGE_OVER_INTERVAL * (f->height[i + 1] - f->height[i]));
 }
 
 /* State in the middle of an increment, found when it is first needed. */
@@ -627,7 +629,8 @@ bool full_stick_update(const Foundation *f, const PatchIncrement *path, const do
     const PatchState *from = path->start, *to = path->end;
     const double x[N_STICK_RETENTION] = {to->approach < from->approach, stick_stiffness(f, from),
                                          stick_stiffness(f, to)};
-    const double most = FULL_STICK_OVER_GROSS_SLIP_DISPLACEMENT * f->mu / f->ratio * x[R_STIFFNESS_END] * (to->approach - f->height[0]);
+    const double most = FULL_STICK_OVER_GROSS_SLIP_DISPLACEMENT * f->mu / f->ratio * x[R_STIFFNESS_END] *
+                        (to->approach - f->height[0]);
     double rule[2], *t = update->traction;
     stick_retention(x, NULL, rule);
     *update = (SliderUpdate){.tangent = {x[R_STIFFNESS_END], 0.0, x[R_STIFFNESS_END], 0.0, 0.0, x[R_STIFFNESS_END]}};

@@ -12,6 +12,7 @@ from jointfmu_tools import cli
 from jointfmu_tools.inputs.fitting import decay
 from jointfmu_tools.inputs.fitting.backbone import Backbone
 from jointfmu_tools.inputs.fitting.hysteresis import Oscillator
+from jointfmu_tools.joints.harmonic_drive.catalogue import TABLE_END_OVER_RATED_TORQUE
 from jointfmu_tools.joints.harmonic_drive.fit import catalogue, hysteresis, torque_angle
 from jointfmu_tools.joints.harmonic_drive.fit.drive import wind_up
 from jointfmu_tools.run.ramps import ramp
@@ -63,7 +64,7 @@ def test_angles_are_kept(one):
     found = catalogue.fit_contact_pair_law(one)
     kept = np.array([one.T1, one.T2, one.rated])
     np.testing.assert_allclose(wind_up(found.parameters.values, kept), one.wind_up(kept), rtol=0.01)
-    assert found.parameters.values.max_torque == catalogue.TABLE_END_OVER_RATED_TORQUE * one.rated
+    assert found.parameters.values.max_torque == TABLE_END_OVER_RATED_TORQUE * one.rated
 
 
 @pytest.mark.slow

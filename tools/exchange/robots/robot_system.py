@@ -300,7 +300,7 @@ class RobotArm:
     def make_component(self, payload: float) -> SystemComponent:
         """Component of a system, with the payload [kg] at the origin of the tip body."""
         groups: dict[str, tuple[str, CheckedParameters]] = {
-            "payload": ("payload", Payload(m=payload, x=0.0, y=0.0, z=0.0, J_x=0.0, J_y=0.0, J_z=0.0)),
+            "payload": ("payload", Payload.at_origin(payload)),
             **{f"joint{k}": (joint.name, joint.make_parameters()) for k, joint in enumerate(self.joints)},
         }
         sets = [

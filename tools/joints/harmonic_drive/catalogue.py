@@ -52,6 +52,10 @@ ACTUATOR_SERIES = ("CHA", "FHA", "RSF")
 """Series with a built-in motor; their published torques are not those of the gear alone."""
 HIGH_TORQUE_SERIES = ("CSG", "SHG")
 """Series with higher torques than the others, by the factor HIGH_TORQUE_OVER_STANDARD_SERIES."""
+TABLE_END_OVER_RATED_TORQUE = 4.0
+"""Largest torque of the table (max_torque) over rated torque [1], if no repeated peak torque is known.
+
+Catalogue drives have about this ratio."""
 HIGH_TORQUE_OVER_STANDARD_SERIES = 1.3
 """Torque of a CSG drive over that of a CSF drive of the same size and ratio [1]."""
 SERIES_WITH_PUBLISHED_TORQUES = ("CSG", "SHG", "HFUC", "HFUS")

@@ -12,7 +12,13 @@ from ...inputs.catalogue import SourcedNumber
 from ...inputs.drawing.part import DrawingOptions, NewJoint, NewJointCommand
 from ...inputs.drawing.quantities import parse_value
 from ...inputs.drawing.reading import parse_temperature
-from .catalogue import STIFFNESS_COLUMN_NAMES, STIFFNESS_COLUMNS, find_drive, find_ratio
+from .catalogue import (
+    STIFFNESS_COLUMN_NAMES,
+    STIFFNESS_COLUMNS,
+    TABLE_END_OVER_RATED_TORQUE,
+    find_drive,
+    find_ratio,
+)
 from .friction import (
     CATALOGUE_MOTOR_SPEED,
     FRICTION_COLUMNS,
@@ -38,10 +44,6 @@ FIXED_PARTS: Mapping[str, str] = {
 """{fixed part of the drive: effect on the ratio}."""
 MIN_EFFICIENCY = 0.1
 """Least efficiency [1] at rated torque and 2000 rev/min: drives of the catalogue have 0.5 to 0.85."""
-TABLE_END_OVER_RATED_TORQUE = 4.0
-"""Largest torque of the table (max_torque) over rated torque [1], if no repeated peak torque is known.
-
-Catalogue drives have about this ratio."""
 
 
 def _make_joint(options: DrawingOptions) -> NewJoint:

@@ -19,12 +19,12 @@ from ...common.options import Option
 from ...inputs.catalogue import SourcedNumber
 from ...inputs.drawing.part import DrawingOptions, NewJoint, NewJointCommand
 from ...inputs.drawing.quantities import parse_value
+from .catalogue import TABLE_END_OVER_RATED_TORQUE
 from .efficiency import hysteresis_loss, lost_motion
 from .friction import FRICTION_COLUMNS
 from .new import (
     DAMPING_TIME,
     FRICTION_OPTIONS,
-    TABLE_END_OVER_RATED_TORQUE,
     check_efficiency,
     read_friction_parameters,
     set_temperature,

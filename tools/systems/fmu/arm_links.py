@@ -72,8 +72,7 @@ class ArmLinks:
 
     def make_component(self) -> SystemComponent:
         """Component of the system; the torque of each drive acts on the link behind its axis."""
-        no_payload = Payload(**dict.fromkeys(("m", "x", "y", "z", "J_x", "J_y", "J_z"), 0.0))
-        values = ArmParameters(payload=no_payload)
+        values = ArmParameters(payload=Payload.at_origin(0.0))
         names = flatten_parameters(values)
         file = ParameterFile(
             "arm", "arm", values, dict.fromkeys(names, "derived"), dict.fromkeys(names, "section [arm]")

@@ -292,7 +292,7 @@ def _format_solution(points: InterfacePoints) -> list[str]:
 
 
 def _format_stiffness(identified_surface: Identification, parameter_file: ParameterFile | None) -> str:
-    """Line on the stiffness per area that the rms height predicts."""
+    """Format one line of text: the stiffness per area, predicted from the rms height of the surfaces."""
     h = find_combined_rms_height(identified_surface, parameter_file)
     known = {name[2] for name in parameter_file.roughness} if parameter_file else set()
     if (

@@ -25,7 +25,7 @@ from jointfmu.quantity import Array
 from ....inputs.catalogue import SourcedNumber
 from ....inputs.fitting.least_squares import EMPTY_SOLUTION, Solution, solve
 from ....inputs.fitting.outcome import FitFacts, FitResult, fitted_parameters, make_predictor, make_unknowns
-from ..catalogue import STIFFNESS_COLUMN_NAMES
+from ..catalogue import STIFFNESS_COLUMN_NAMES, TABLE_END_OVER_RATED_TORQUE
 from . import drive
 from .drive import CatalogueRow, angle_picture, stiffness, stiffness_picture
 
@@ -40,8 +40,6 @@ EXACT_ANGLE_STANDARD_DEVIATIONS = (2e-2, 1e-2, 5e-3, 2e-3, 1e-3, 5e-4)
 the fitted angles are within MAX_ANGLE_ERROR."""
 OTHER_ANGLE_STANDARD_DEVIATION = 0.2
 """Relative standard deviation [1] of the angle at other torques: real drives have no corners."""
-TABLE_END_OVER_RATED_TORQUE = 4.0
-"""Largest torque of the table (max_torque) over rated torque [1]: about the peak torque of catalogues."""
 
 
 def fit(
