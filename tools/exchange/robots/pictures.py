@@ -165,5 +165,6 @@ def draw_ringing(path: Path, axes: Sequence[ElasticAxis], ringing: Sequence[Ring
         panel = figure.subplots()
         for axis, result in zip(axes, ringing, strict=True):
             panel.plot(result.times, 1e3 * result.distance, label=f"stop of {axis.joint}", linewidth=1.0)
-        panel.set(xlabel="time after the stop [s]", ylabel="ringing of the tip [mm]", ylim=(0.0, None))
+        panel.set(xlabel="time after the stop [s]", ylabel="distance of the tip from rest [mm]")
+        panel.set_ylim(0.0, None)
         panel.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0))
