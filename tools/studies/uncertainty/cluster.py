@@ -1,6 +1,6 @@
 """Runs of a study on the workers of a dask cluster."""
 
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Generator, Iterator, Sequence
 from concurrent.futures import CancelledError
 from contextlib import contextmanager, suppress
@@ -70,12 +70,16 @@ def _submit_jobs(client: Any, key: str, jobs: Sequence[Sequence[Run]]) -> Iterat
     """Submit jobs to a dask client, and yield the journal entries of each job when it ends.
 
     key : key under which the workers have the evaluator
+
+    The runs of a job whose worker died are repeated at the end, one at a time with no other job on the
+    cluster. So a run is recorded as the one that killed its worker only if it did.
     """
     from distributed import KilledWorker, as_completed
 
     from .plugin import run_on_dask_worker
 
     waiting, submitted, lost = iter(jobs), dict[str, Sequence[Run]](), Counter[int]()
+    suspects = deque[Sequence[Run]]()
 
     def submit(job: Sequence[Run]) -> object:
         """Submit a job to the cluster, and remember it."""
@@ -85,17 +89,17 @@ def _submit_jobs(client: Any, key: str, jobs: Sequence[Sequence[Run]]) -> Iterat
 
     ahead = JOBS_PER_WORKER * max(sum(client.nthreads().values()), 1)
     queue = as_completed([submit(job) for job in islice(waiting, ahead)])
+    is_suspect_alone = False
     for future in queue:
         job = submitted.pop(future.key)
         first_run = job[0][0]
         try:
             yield future.result()
-        except KilledWorker:
-            if len(job) > 1:  # find the run that kills
-                for run in job:
-                    queue.add(submit([run]))
-                continue
-            yield [killed_entry(*job[0])]
+        except KilledWorker:  # dask also raises it for jobs that only waited on the worker that died
+            if is_suspect_alone:
+                yield [killed_entry(*job[0])]
+            else:
+                suspects.extend([run] for run in job)
         except Exception as error:
             lost[first_run] += 1
             if not isinstance(error, CancelledError) or lost[first_run] > MAX_RESTARTS:
@@ -106,3 +110,6 @@ def _submit_jobs(client: Any, key: str, jobs: Sequence[Sequence[Run]]) -> Iterat
             continue
         for next_job in islice(waiting, 1):
             queue.add(submit(next_job))
+        if suspects and not submitted:
+            is_suspect_alone = True
+            queue.add(submit(suspects.popleft()))

@@ -30,7 +30,9 @@ class EvaluatorPlugin(WorkerPlugin):  # type: ignore[misc]
         self.key, self.evaluator = key, evaluator
 
     def setup(self, worker: Any) -> None:
-        folder = Path(tempfile.mkdtemp(prefix="study-", dir=worker.local_directory))
+        parent = Path(worker.local_directory)
+        parent.mkdir(parents=True, exist_ok=True)  # dask may delete it when the previous worker process died
+        folder = Path(tempfile.mkdtemp(prefix="study-", dir=parent))
         EVALUATORS[self.key] = self.evaluator.install_files(folder), folder
 
     def teardown(self, worker: Any) -> None:
