@@ -18,6 +18,7 @@ from jointfmu_tools.run.proof.run import prove
 from jointfmu_tools.systems.fmu import proof
 from jointfmu_tools.systems.fmu.assembly import assemble_system
 from jointfmu_tools.systems.fmu.build import build_system
+from jointfmu_tools.systems.fmu.code import generate_sources
 from jointfmu_tools.systems.system import load_system, load_systems, read_system
 from proofs import ECOS, LIBCOSIM, copy, replaced
 from scipy.interpolate import CubicSpline
@@ -71,6 +72,21 @@ def exchange(file, outputs, stop, tolerance, interval):
     return run(
         file, outputs, interval, stop, fmi_type="ModelExchange", solver="CVode", relative_tolerance=tolerance
     )
+
+
+def test_components_that_differ_in_data_share_their_code():
+    """Six drives of the catalogue share one C; the C of bolted joints reads the data of one joint."""
+    files = generate_sources(assemble_system(load_system("six_axis_robot")))
+    drives = "HarmonicDriveSpring_"
+    assert [name for name in files if name.endswith("harmonic_drive.c")] == [f"{drives}harmonic_drive.c"]
+    assert len([name for name in files if re.fullmatch(rf"{drives}data\d*\.c", name)]) == 6
+    column = assemble_system(load_system("bolted_column"))
+    (joint,) = (c for c in column.components if c.model.name == "BoltedJoint")
+    wider = joint.parameters.with_values({"pattern.hole_diameter": 0.02}, "user", "test")
+    for parameters, count in ((joint.parameters, 1), (wider, 2)):
+        other = replace(joint, name="other", parameters=parameters)
+        files = generate_sources(replace(column, components=[other, *column.components]))
+        assert len([name for name in files if name.endswith("_bolted_joint.c")]) == count
 
 
 @pytest.mark.parametrize("version", ["2", "3"])

@@ -6,7 +6,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "data.h"
 #include "simd.h"
 #include "tabulated_joint.h"
 
@@ -35,7 +34,7 @@ _Static_assert((int)CURVE_NODES >= (int)MAX_MIDLINE, "room for all nodes");
 
 static bool tabulate_midline(Joint *joint, Text *reason)
 {
-    return tabulate_nodes(joint, data.midline, (int)data.n_midline, reason);
+    return tabulate_nodes(joint, joint->data->midline, (int)joint->data->n_midline, reason);
 }
 #elif defined MIDLINE_NODES
 enum { N_MIDLINE_NODES = (int)MIDLINE_NODES };

@@ -2,7 +2,9 @@
 
 import re
 from collections.abc import Mapping
+from itertools import count
 from pathlib import Path
+from typing import NamedTuple
 
 from jointfmu_fmu_src.joint_parts.c_text import format_array, format_string
 from jointfmu_fmu_src.native.code.elementary import make_tables_header
@@ -35,20 +37,47 @@ _C_DEFINITION_PATTERN = re.compile(
     r"^(?!static|typedef|extern|enum|return|else)[A-Za-z_][\w *]*?\b(\w+)(?:\[.*)?(?:\(| = \{)", re.M
 )
 """Pattern of the definition of an external name in C."""
+_FIXED_DATA_PATTERN = re.compile(r'(?<!")\bdata\.[a-z]')
+"""Pattern of C that reads a member of the object `data`, which is the data of one component."""
 _MAX_WARNINGS = 32
 """Largest number of warnings in one FMU [1]: bits of the flags of logged warnings."""
+
+
+class _ComponentCode(NamedTuple):
+    """C of a component, which components with the same C share.
+
+    files          : {file name: text} of all files except data.c
+    data_sources   : texts of data.c of the components that share the files
+    has_fixed_data : whether the files read the object `data`; otherwise the data are only the argument
+        `joint_data` of `joint_tabulate`, and components with other data share the files
+    """
+
+    files: dict[str, str]
+    data_sources: list[str]
+    has_fixed_data: bool
+
+    def is_shared_with(self, other: "_ComponentCode") -> bool:
+        """Whether a component with its own C can share this one instead."""
+        return self.files == other.files and (
+            not self.has_fixed_data or self.data_sources == other.data_sources
+        )
 
 
 def generate_sources(system_model: SystemModel) -> dict[str, str]:
     """{file name: text} of all C sources of a system except data.h and data.c."""
     model = system_model.make_model()
-    code_by_prefix: dict[str, dict[str, str]] = {}
-    prefixes = {}
+    code_by_prefix: dict[str, _ComponentCode] = {}
+    prefixes, data_names = {}, {}
     for component in system_model.components:
-        component_code = _component_code(component)
-        equal = [prefix for prefix, known in code_by_prefix.items() if known == component_code]
-        prefixes[component.name] = equal[0] if equal else f"p{len(code_by_prefix) + 1}_"
-        code_by_prefix.setdefault(prefixes[component.name], component_code)
+        code = _generate_component_code(component)
+        candidates = (_name_with_index(component.model.name, k) + "_" for k in count())
+        prefix = next(p for p in candidates if code_by_prefix.setdefault(p, code).is_shared_with(code))
+        known_sources = code_by_prefix[prefix].data_sources
+        if code.data_sources[0] not in known_sources:
+            known_sources += code.data_sources
+        prefixes[component.name] = prefix
+        index = known_sources.index(code.data_sources[0])
+        data_names[component.name] = prefix + _name_with_index("data", index)
     files = {
         path.name: path.read_text(encoding="utf-8")
         for path in (*_COMMON_FILES, *Path(__file__).parent.glob("*.[ch]"))
@@ -56,47 +85,72 @@ def generate_sources(system_model: SystemModel) -> dict[str, str]:
     files |= {"elementary_tables.h": make_tables_header(), "variables.c": format_variables_c(model)}
     files |= {
         "model.h": _format_model_header(system_model),
-        "components.c": _format_components(system_model, prefixes),
+        "components.c": _format_components(system_model, prefixes, data_names),
     }
-    for prefix, component_code in code_by_prefix.items():
-        files |= _add_prefix(prefix, component_code)
+    for prefix, code in code_by_prefix.items():
+        files |= _add_prefix(prefix, code)
     return dict(sorted(files.items()))
 
 
-def _component_code(component: SystemComponent) -> dict[str, str]:
-    """{file name: text} of a component's C, without the FMI functions and the runtime of the system."""
+def _generate_component_code(component: SystemComponent) -> _ComponentCode:
+    """C of a component, without the FMI functions and the runtime of the system."""
     parameter_split = split_parameters(component.model, component.parameters)
-    count = (
+    value_count = (
         1 + len(component.model.inputs) + len(component.model.outputs) + len(parameter_split.variable_names)
     )
     data = make_data_block(
-        "part", "", [0.0] * count, list(parameter_split.data_values.values()), parameter_split.tables
+        "part",
+        "",
+        [0.0] * value_count,
+        list(parameter_split.data_values.values()),
+        parameter_split.tables,
     )
-    files = generate_code(component.model, component.parameters, parameter_split)
-    files |= {"data.h": data.make_header(), "data.c": data.make_source()}
-    return {name: text for name, text in files.items() if name.rpartition(".")[0] not in _SHARED_FILE_STEMS}
+    generated_files = generate_code(component.model, component.parameters, parameter_split)
+    files = {
+        name: text
+        for name, text in generated_files.items()
+        if name.rpartition(".")[0] not in _SHARED_FILE_STEMS
+    }
+    has_fixed_data = any(_FIXED_DATA_PATTERN.search(text) for text in files.values())
+    return _ComponentCode(files | {"data.h": data.make_header()}, [data.make_source()], has_fixed_data)
 
 
-def _add_prefix(prefix: str, files: Mapping[str, str]) -> dict[str, str]:
-    """Add a prefix to the names of C files of a component, and to all external names that they define."""
+def _name_with_index(name: str, index: int) -> str:
+    """Name with a number from the second object of this name on: NAME, NAME2, NAME3."""
+    return f"{name}{index + 1}" if index else name
+
+
+def _add_prefix(prefix: str, code: _ComponentCode) -> dict[str, str]:
+    """Add a prefix to the names of C files of components, and to all external names that they define."""
     names = sorted(
         {
-            name
-            for file, text in files.items()
-            if file.endswith(".c")
-            for name in _C_DEFINITION_PATTERN.findall(text)
+            "data",
+            *(
+                name
+                for file, text in code.files.items()
+                if file.endswith(".c")
+                for name in _C_DEFINITION_PATTERN.findall(text)
+            ),
         }
     )
+
+    def add_prefix_to_includes(text: str) -> str:
+        """Add the prefix to the names of included files of the component."""
+        return re.sub(
+            r'#include "(\w+)\.h"',
+            lambda m: m[0] if f"{m[1]}.h" not in code.files else f'#include "{prefix}{m[1]}.h"',
+            text,
+        )
+
     macros = "".join(f"#define {name} {prefix}{name}\n" for name in names)
     head = f'#include "{prefix}names.h"\n'
     prefixed_files = {f"{prefix}names.h": macros}
-    for file, text in files.items():
-        prefixed_text = re.sub(
-            r'#include "(\w+)\.h"',
-            lambda m: m[0] if f"{m[1]}.h" not in files else f'#include "{prefix}{m[1]}.h"',
-            text,
-        )
+    for file, text in code.files.items():
+        prefixed_text = add_prefix_to_includes(text)
         prefixed_files[prefix + file] = head + prefixed_text if file.endswith(".c") else prefixed_text
+    for index, text in enumerate(code.data_sources):
+        name = prefix + _name_with_index("data", index)
+        prefixed_files[f"{name}.c"] = f"#define data {name}\n{add_prefix_to_includes(text)}"
     return prefixed_files
 
 
@@ -134,8 +188,14 @@ def _count_time_events(component: SystemComponent) -> int:
     )
 
 
-def _format_components(system_model: SystemModel, prefixes: Mapping[str, str]) -> str:
-    """Text of components.c: functions, sizes and connections of the components of a system."""
+def _format_components(
+    system_model: SystemModel, prefixes: Mapping[str, str], data_names: Mapping[str, str]
+) -> str:
+    """Text of components.c: functions, data, sizes and connections of the components of a system.
+
+    prefixes   : {component: prefix of its C functions}
+    data_names : {component: name of its data in C}
+    """
     first = 1 + len(system_model.inputs)
     reference = {p.full_name(v.name): k for k, (p, v) in enumerate(system_model.inputs, start=1)}
     reference |= {p.full_name(v.name): k for k, (p, v) in enumerate(system_model.outputs, start=first)}
@@ -143,6 +203,7 @@ def _format_components(system_model: SystemModel, prefixes: Mapping[str, str]) -
     offset = {"parameters": 0, "memory": 0, "row": 0, "wire": 0, "warnings": 0}
     for prefix in dict.fromkeys(prefixes.values()):
         declared += _list_declarations(prefix)
+    declared += [f"extern const Data {name};\n" for name in data_names.values()]
     for component in system_model.components:
         model, prefix = component.model, prefixes[component.name]
         sources = [component.sources.get(v.name, (component.name, v.name)) for v in model.inputs]
@@ -154,7 +215,8 @@ def _format_components(system_model: SystemModel, prefixes: Mapping[str, str]) -
         functions = [f"{prefix}joint_{name}" for name in _JOINT_C_FUNCTIONS]
         functions.append(f"{prefix}joint_event_times" if events else "NULL")
         counts = [len(model.inputs), len(model.outputs), model.state_count, events, *offset.values()]
-        rows.append("{" + ", ".join([format_string(component.name), *functions, *map(str, counts)]) + "}")
+        names = [format_string(component.name), f"&{data_names[component.name]}"]
+        rows.append("{" + ", ".join([*names, *functions, *map(str, counts)]) + "}")
         inputs, outputs = len(model.inputs), len(model.outputs)
         offset["parameters"] += len(component.variable_parameters)
         offset["memory"] += load_native_definition(model).history_layout.size

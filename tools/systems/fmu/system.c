@@ -30,8 +30,9 @@ static void append_with_name(const Component *c, const Text *component_reason, T
     text_append_format(reason, "%s: %s", c->name, component_reason->line);
 }
 
-bool joint_tabulate(Joint *joint, const double *parameters, Text *reason)
+bool joint_tabulate(Joint *joint, const Data *joint_data, const double *parameters, Text *reason)
 {
+    (void)joint_data; /* each component has its own */
     double *memory = joint->component_joints;
     for (size_t i = 0; i < N_COMPONENTS; i++) {
         const Component *c = &components[i];
@@ -39,7 +40,7 @@ bool joint_tabulate(Joint *joint, const double *parameters, Text *reason)
         text_clear(&component_reason);
         joint->component[i] = (Joint *)memory;
         memory += joint_doubles(c);
-        if (!c->tabulate(joint->component[i], parameters + c->first_parameter, &component_reason)) {
+        if (!c->tabulate(joint->component[i], c->data, parameters + c->first_parameter, &component_reason)) {
             append_with_name(c, &component_reason, reason);
             return false;
         }

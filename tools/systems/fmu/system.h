@@ -10,9 +10,10 @@
 
 typedef struct {
     const char *name;
+    const Data *data;
     size_t (*size)(void);
     void (*free_tables)(Joint *joint);
-    bool (*tabulate)(Joint *joint, const double *parameters, Text *reason);
+    bool (*tabulate)(Joint *joint, const Data *joint_data, const double *parameters, Text *reason);
     bool (*evaluate)(Joint *joint, const double *inputs, const double *history, double *history_end, double *outputs,
                      Text *reason);
     void (*derivative)(Joint *joint, const double *inputs, const double *history, const double *history_end,

@@ -55,7 +55,7 @@ static bool update_tables(Instance *m)
         check_parameter(&reason, &variables[FIRST_PARAMETER + i], parameters[i]);
     const bool had_tables = m->tables_are_valid, are_allowed = reason.length == 0;
     if (are_allowed)
-        m->tables_are_valid = joint_tabulate(m->joint, parameters, &reason);
+        m->tables_are_valid = joint_tabulate(m->joint, &data, parameters, &reason);
     if (!are_allowed || !m->tables_are_valid)
         return log_refusal(m, ERROR, &reason) == OK;
     memcpy(m->tabulated_parameters, parameters, sizeof m->tabulated_parameters);

@@ -10,6 +10,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "data.h"
 #include "text.h"
 
 typedef struct Joint Joint;
@@ -20,9 +21,10 @@ size_t joint_size(void);
 /* Free the memory that `joint_tabulate` allocated for tables, if any. */
 void joint_free_tables(Joint *joint);
 
-/* Compute the tables for parameters, each of which is inside its own interval. Only this function allocates memory.
- * false: refused; `reason` has name, value and allowed values. */
-bool joint_tabulate(Joint *joint, const double *parameters, Text *reason);
+/* Compute the tables for parameters, each of which is inside its own interval. `joint_data`: data block of this joint,
+ * which lives as long as the joint. Only this function allocates memory. false: refused; `reason` has name, value and
+ * allowed values. */
+bool joint_tabulate(Joint *joint, const Data *joint_data, const double *parameters, Text *reason);
 
 /* Outputs, and history variables `history_end`, at the end of a straight load step from the history variables
  * `history` to inputs that are finite and inside their intervals. false: refused, with the reason. */

@@ -32,11 +32,11 @@ void joint_free_tables(Joint *joint)
     (void)joint;
 }
 
-bool joint_tabulate(Joint *joint, const double *parameters, Text *reason)
+bool joint_tabulate(Joint *joint, const Data *joint_data, const double *parameters, Text *reason)
 {
     (void)reason;
     memcpy(joint->constants, parameters, N_PARAMETERS * sizeof(double));
-    memcpy(joint->constants + N_PARAMETERS, data.hidden_parameters, N_HIDDEN_PARAMETERS * sizeof(double));
+    memcpy(joint->constants + N_PARAMETERS, joint_data->hidden_parameters, N_HIDDEN_PARAMETERS * sizeof(double));
     law_constants(joint->constants, 0, joint->constants + N_PARAMETERS + N_HIDDEN_PARAMETERS);
 #if HAS_JACOBIAN
     joint->jacobian_is_current = false;

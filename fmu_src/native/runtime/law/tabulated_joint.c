@@ -55,10 +55,11 @@ static bool check_parameter_limits(const Joint *joint, Text *reason)
     return true;
 }
 
-bool joint_tabulate(Joint *joint, const double *parameters, Text *reason)
+bool joint_tabulate(Joint *joint, const Data *joint_data, const double *parameters, Text *reason)
 {
     memcpy(joint->constants, parameters, N_PARAMETERS * sizeof(double));
-    memcpy(joint->constants + N_PARAMETERS, data.hidden_parameters, N_HIDDEN_PARAMETERS * sizeof(double));
+    joint->data = joint_data;
+    memcpy(joint->constants + N_PARAMETERS, joint_data->hidden_parameters, N_HIDDEN_PARAMETERS * sizeof(double));
     law_constants(joint->constants, 0, joint->constants + N_PARAMETERS + N_HIDDEN_PARAMETERS);
     return check_parameter_limits(joint, reason) && tabulate_model(joint, reason);
 }

@@ -9,6 +9,7 @@
 #include "variables.h"
 
 struct Joint {
+    const Data *data;
     double constants[N_CONSTANTS]; /* parameters, parameters that are no FMU variables, expressions of both */
     Curve curve;
     JointModel model;

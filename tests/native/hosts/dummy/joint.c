@@ -18,8 +18,9 @@ void joint_free_tables(Joint *joint)
     (void)joint;
 }
 
-bool joint_tabulate(Joint *joint, const double *parameters, Text *reason)
+bool joint_tabulate(Joint *joint, const Data *joint_data, const double *parameters, Text *reason)
 {
+    (void)joint_data;
     joint->k = NAN; /* nothing is right until all is */
     if (parameters[0] > 1.9 && parameters[2] > 100.0) {
         text_append(reason, "D = ");

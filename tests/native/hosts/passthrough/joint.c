@@ -16,9 +16,9 @@ void joint_free_tables(Joint *joint)
     (void)joint;
 }
 
-bool joint_tabulate(Joint *joint, const double *parameters, Text *reason)
+bool joint_tabulate(Joint *joint, const Data *joint_data, const double *parameters, Text *reason)
 {
-    (void)reason;
+    (void)joint_data, (void)reason;
     joint->gain = parameters[0];
     return true;
 }

@@ -20,9 +20,9 @@ void joint_free_tables(Joint *joint)
     (void)joint;
 }
 
-bool joint_tabulate(Joint *joint, const double *parameters, Text *reason)
+bool joint_tabulate(Joint *joint, const Data *joint_data, const double *parameters, Text *reason)
 {
-    (void)reason;
+    (void)joint_data, (void)reason;
     *joint = (Joint){parameters[0], parameters[1]};
     return true;
 }
