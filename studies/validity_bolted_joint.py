@@ -310,7 +310,7 @@ def compare_with_calculix(refinement: float, top: float) -> tuple[Array, dict[st
     lap = Lap.of(refinement)
     shear, spring, linear = lap.linear(LAP_LENGTH)
     normal, friction = shear / spring.friction_law.foundation().stiffness_ratio, lap.values.mu * LAP_LOAD
-    bodies = replace(lap.bodies, interface=patches(lap.bodies.contact_interface))
+    bodies = replace(lap.bodies, contact_interface=patches(lap.bodies.contact_interface))
     at = bodies.contact_interface.quadrature_area
     elements = FrictionElements.of(
         bodies, np.full(at.size, LAP_LOAD / at.sum()), spring, friction, np.eye(6)[0]

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import scipy.sparse as sp
 from jointfmu_tools.fem.reduction.patch_work import (
     FrictionPoints,
     PatchFit,
@@ -9,12 +10,14 @@ from jointfmu_tools.fem.reduction.patch_work import (
     StickContactStiffness,
     compute_friction_work,
     evaluate_friction,
+    patch_rotations,
     rigid_displacement_matrix,
     shear_combinations,
     stick_stiffness_matrix,
 )
 
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
+from jointfmu.mechanics.footprint.distribution import FrictionPatches
 from jointfmu.parameters import load_default
 
 RADIUS, COUNT, PATCHES = 0.02, 24, 10
@@ -130,3 +133,17 @@ def test_slopes_are_those_of_differences(disc):
         low, high = (working._work_errors(each)[0] for each in there)
         column = slope[:, np.ravel_multi_index(index, means.shape)]
         np.testing.assert_allclose((high - low) / (2 * step), column, atol=2e-4 * np.abs(column).max())
+
+
+def test_a_patch_of_a_single_point_does_not_rotate():
+    """Side 2 rotates by 1 rad about the origin. A cell of four points rotates with it. A cell of one point
+    has no rotation, although its centre differs from its point by the round-off of 49 (1/49) < 1."""
+    place = np.array([[0.0, 0.0], [2e-3, 0.0], [0.0, 2e-3], [2e-3, 2e-3], [0.03, 0.01]])
+    means = sp.csr_matrix([[0.25] * 4 + [0.0], [0.0] * 4 + [49.0 * (1.0 / 49.0)]])
+    assert (means @ place)[1, 0] != place[4, 0]
+    each = np.ones(2)
+    centres = np.array([[1e-3, 1e-3], [0.03, 0.01]])
+    patches = FrictionPatches(0.5 * each, centres, each, 0.0 * each, 0.0 * each)
+    turned = [-place[:, 1:], place[:, :1]]
+    rotations = patch_rotations(place, patches, means, turned)
+    np.testing.assert_allclose(rotations[:, 0], [1.0, 0.0], atol=1e-12)

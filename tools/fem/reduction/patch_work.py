@@ -35,7 +35,10 @@ STIFFNESS_WEIGHT = 300.0
 losses [1]. The stiffness error stays below 2e-4. A larger weight makes the valley of the objective too narrow
 for the steps."""
 MIN_DISPLACEMENT = 1e-15
-"""Smallest tangential displacement in divisions [m]; also the smallest relative loss in scales [1]."""
+"""Smallest tangential displacement in divisions [m]."""
+MIN_LOSS_OVER_WORK = 0.01
+"""Loss per cycle over the work of the stick forces [1]: lower limit for scales of losses. Rough surfaces lose
+more at the smallest motion; an interface of constant stiffness loses nothing below its friction limit."""
 MIN_SQUARE_RATIO = 1e-12
 """Mean square distance of the points of a cell from its centre over the largest one [1]; below: round-off."""
 MIN_RELATIVE_DISPLACEMENT_SCALE = 0.03
@@ -69,6 +72,11 @@ class ShearStates:
     motion: Array
     modal_coordinates: Array
 
+    @property
+    def coordinates(self) -> Array:
+        """Motions and modal coordinates (s, 3 + k) [m, rad]."""
+        return np.concatenate([self.motion, self.modal_coordinates], axis=1)
+
 
 @dataclass(frozen=True)
 class FrictionPoints:
@@ -97,15 +105,6 @@ class FrictionWork:
     friction_forces: Array
     stick_forces: Array
     cycle_loss: Array
-
-    @cached_property
-    def residual_scales(self) -> tuple[Array, Array, Array]:
-        """Divisors of the errors of forces, stick forces (s, 3 + k) and losses (s), for equal weights."""
-        return (
-            _force_scale(self.friction_forces),
-            _force_scale(self.stick_forces),
-            np.maximum(self.cycle_loss, MIN_DISPLACEMENT * np.max(self.cycle_loss)),
-        )
 
 
 def _force_scale(forces: Array) -> Array:
@@ -200,6 +199,17 @@ class PatchFit:
     rotation_displacement: Array
     target_work: FrictionWork
     stick_contact_stiffness: StickContactStiffness
+
+    @cached_property
+    def residual_scales(self) -> tuple[Array, Array, Array]:
+        """Divisors of the errors of forces, stick forces (s, 3 + k) and losses (s), for equal weights."""
+        target = self.target_work
+        work = np.sum(self.shear_states.coordinates * target.stick_forces, axis=1)
+        return (
+            _force_scale(target.friction_forces),
+            _force_scale(target.stick_forces),
+            np.maximum(target.cycle_loss, MIN_LOSS_OVER_WORK * work),
+        )
 
     def evaluate_sliders(
         self, shear_states: ShearStates, patch_displacement: Array
@@ -313,9 +323,7 @@ class PatchFit:
             (actual.stick_forces, target.stick_forces),
             (actual.cycle_loss, target.cycle_loss),
         )
-        errors = [
-            ((a - b) / size).ravel() for (a, b), size in zip(pairs, target.residual_scales, strict=True)
-        ]
+        errors = [((a - b) / size).ravel() for (a, b), size in zip(pairs, self.residual_scales, strict=True)]
         return np.concatenate(errors), (displacement, friction)
 
     def _work_jacobian(
@@ -358,7 +366,7 @@ class PatchFit:
         force_derivative, mode = forces[..., None] * amplitude[:, None, None, None], np.arange(modes)
         force_derivative[:, :, 3 + mode, :, :, mode] += patch_forces
         derivatives = *force_derivative, loss[..., None] * amplitude[:, None, None]
-        pairs = zip(derivatives, self.target_work.residual_scales, strict=True)
+        pairs = zip(derivatives, self.residual_scales, strict=True)
         return np.concatenate(
             [(x / s.reshape(s.shape + (1,) * 3)).reshape(-1, patch_displacement.size) for x, s in pairs]
         )
@@ -434,9 +442,8 @@ def evaluate_friction(
     Returns the displacement (2 n, 3 + k) of the points by 3 motions and k modes, and their friction.
     """
     displacement = np.concatenate([friction_points.rigid_displacement, modal_displacement], axis=1)
-    coordinates = np.concatenate([shear_states.motion, shear_states.modal_coordinates], axis=1)
     return displacement, MonotonicFriction.evaluate(
-        friction_law, friction_points.approach, coordinates @ displacement.T
+        friction_law, friction_points.approach, shear_states.coordinates @ displacement.T
     )
 
 
