@@ -46,7 +46,7 @@ class PathResult(NamedTuple):
 
 
 class JointEngine(Protocol):
-    """Joint that can be evaluated along paths of its inputs.
+    """Interface of a joint that can be evaluated along paths of its inputs.
 
     model : inputs and outputs of the joint
     """
@@ -135,7 +135,10 @@ class VariableJoint:
         return engine
 
     def _find_engine(self, hidden_values: Mapping[str, Any]) -> tuple[JointEngine, dict[str, Any]]:
-        """Open joint with given hidden parameters (not exposed by the FMU), and the values set in it."""
+        """Engine of the joint with these hidden parameters, and the exposed parameters that are set in it.
+
+        hidden_values : {name: value} of parameters that the FMU does not expose
+        """
         key = tuple(sorted(hidden_values.items()))
         found = self._engines.pop(key, None)
         if found is None:
@@ -288,7 +291,7 @@ class CompiledJoint(LoadedLibrary):
 def _close_library(library: Any, instance: Any, logger: Any, folder: str) -> None:
     """Free the instance of a library, unload the library and remove its folder.
 
-    logger : callback of the instance, an argument only to keep it alive until here
+    logger : log callback of the instance; it must exist until the library is unloaded
     """
     import _ctypes
 

@@ -168,8 +168,8 @@ def _scale_partner(
 ) -> Component:
     """Partner (body or load) scaled from the rated values of one joint to those of another joint.
 
-    Loads scale with the rated load, inertias with the rated load over the motion of the flange. A load that
-    stays, `ramp_height`, is increased by the friction of the new joint.
+    Loads scale with the rated load, inertias with the rated load over the motion of the flange. The permanent
+    load `ramp_height` also changes by the difference of the friction of both joints.
     """
     load = rating_after.load / rating_before.load
     inertia = load * rating_before.motion / rating_after.motion

@@ -84,7 +84,8 @@ def points_from_solution(
     """Points of the interface law `table` from a solution by boundary elements.
 
     scans      : heights without form, of one side or of both
-    both_sides : whether the single scan describes both sides: its gap is that to itself, turned
+    both_sides : whether the single scan describes both sides; the gap is then that of the scan and its copy,
+                 mirrored in y
     """
     from .solve import gap_of_scans, solve_stiffness
 

@@ -195,11 +195,11 @@ def hysteresis_loss(spring: HarmonicDriveSpring) -> float:
 
 
 def lost_motion(spring: HarmonicDriveSpring, torque_ratio: float = LOST_MOTION_TORQUE_OVER_RATED) -> float:
-    """Lost motion [rad]: change of the mean angle of both branches between -4 % and +4 % of the rated torque.
+    """Lost motion [rad]: change of the mean angle of both branches between two small torques -T and +T.
 
-    The branches are those of the loop up to the rated torque.
+    The branches are those of the hysteresis loop between plus and minus the rated torque.
 
-    torque_ratio : share of the rated torque [1], the 4 %
+    torque_ratio : T over the rated torque [1]
     """
     rated = float(spring.joint.rated_torque)
     ends = (

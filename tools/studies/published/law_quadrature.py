@@ -196,7 +196,7 @@ def _hu2023(p: Parameters, largest: float) -> dict[str, float]:
         return 8.0 * shear * sqrt(s / pi)
 
     def slip(spot_load: SpotFunction) -> SpotFunction:
-        """Function of the spot area: traction ratio t/(mu f) [1] under the shear traction."""
+        """Traction ratio t/(mu f) [1] under the shear traction, as a function of the spot area."""
         return lambda s: p["shear_traction"] * s / (p["mu"] * spot_load(s))
 
     def from_zero(spot_quantity: SpotFunction, exponent: float) -> float:
@@ -265,7 +265,7 @@ def _yu2022(p: Parameters, largest: float) -> dict[str, float]:
         return a / (f1 * pi * radius(a) * first_yield(a))
 
     def edge(limit: float) -> float:
-        """SpotFunction area [m2] at which `ratio` reaches a limit: the end of a stage."""
+        """Spot area [m2] at which `ratio` reaches a limit: the end of a stage."""
         return exp(brentq(lambda t: log(ratio(exp(t)) / limit), -250.0, 250.0, xtol=1e-13))
 
     geometric = p["plastic_area"] == "geometric"
@@ -274,7 +274,7 @@ def _yu2022(p: Parameters, largest: float) -> dict[str, float]:
     a_nec, a_nepc, a_npc = edge(1.0), edge(limits[0]), edge(limits[1])
 
     def deformation(a: float) -> tuple[float, float, float]:
-        """Deformation over that at first yield, factor and exponent of the load in the stage of a spot."""
+        """Deformation over that at first yield [1]; factor and exponent of the load in the spot's stage."""
         m, n, c, d = _FIRST_STAGE if a > a_nepc else _SECOND_STAGE
         return (ratio(a), c, d) if geometric else ((ratio(a) / m) ** (1.0 / n), c, d)
 
@@ -359,7 +359,7 @@ def _interface_table(p: Parameters, pressure: float) -> dict[str, float]:
     mu, x, n = p["mu"], p["traction_ratio"], (y[-1] - y[0]) / (u[-1] - u[0])
 
     def shear(force: float) -> float:
-        """Tangential displacement at a shear force, for the loss factor."""
+        """Tangential displacement [m] at a shear force [N], for the loss factor."""
         return (1.0 - (1.0 - force) ** (1.0 - n)) / (1.0 - n)
 
     # Masing's loop between -x and x, at forces over mu F

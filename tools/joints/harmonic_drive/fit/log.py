@@ -242,7 +242,7 @@ def _fit_without_friction(
     fitted_names: Sequence[str] | None,
     friction_names: Sequence[str],
 ) -> FitResult:
-    """Fit a log with the torque behind the drive: load of the joint, and stiffness if q_motor is measured.
+    """Fit a log whose torque is measured at the joint: load, and stiffness if the motor angle is measured.
 
     Raises ValueError if the user wants to fit a friction parameter.
     """
@@ -421,9 +421,9 @@ def _start_parameters(
 
 
 def _catalogue_drive(drive_name: str, ratio: float | None) -> ParameterFile:
-    """Parameters of a drive of the catalogue; a stated ratio selects the row of this ratio.
+    """Parameters of a drive of the catalogue; a stated ratio selects the drive of this ratio.
 
-    A ratio that is larger by 1 than that of the row means that the flexspline is fixed.
+    A stated ratio that is the catalogue's ratio plus 1 means that the flexspline is fixed.
     """
     options = dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.options) | {"catalogue": drive_name}
     if ratio is not None:
