@@ -177,8 +177,9 @@ class Loops:
         return steps
 
     def find_bearing(self) -> tuple[float, float] | None:
-        """Range of motion of slip before the joint bears, and force change of slip; None if it never bears.
+        """Find slip through a clearance, until the joint bears (its bolts touch the holes).
 
+        Returns the range of motion of this slip and its force change; None if the joint never bears.
         After a reversal, friction alone makes a joint softer and softer. A joint that becomes stiffer again
         has slipped through a clearance.
         """

@@ -114,7 +114,7 @@ def fit_law(
 def _search_range(series: ScaleSeries) -> SelfAffineLaw:
     """Fit the self-affine law over the longest range in which it holds.
 
-    Without one, over the range with the least drift plus deviation.
+    If it holds over no range: fit over the range with the smallest sum of drift and deviation.
     """
     n = series.scale.size
     step = max(1, n // 10)

@@ -47,8 +47,8 @@ def friction_and_ratio(catalogue_entry: CatalogueEntry) -> dict[str, float]:
 class SimulatedDrive:
     """Harmonic drive evaluated in Python, with the methods of a running FMU. It starts at rest at angle 0."""
 
-    def __init__(self, model: Model, file: ParameterFile) -> None:
-        self._joint = open_joint(model, file)
+    def __init__(self, model: Model, parameter_file: ParameterFile) -> None:
+        self._joint = open_joint(model, parameter_file)
         self._path = [(0.0,) * len(_FLANGE_INPUT_NAMES)]
         self._inputs = self._path[0]
 
@@ -176,9 +176,9 @@ def open_fmu_test_rig(path: Path, parameters: Mapping[str, float]) -> Iterator[D
         yield DriveTestRig(drive, ratio, presliding, stiffness)
 
 
-def make_test_rig(model: Model, file: ParameterFile) -> DriveTestRig:
+def make_test_rig(model: Model, parameter_file: ParameterFile) -> DriveTestRig:
     """Make a test rig of the drive with the parameters of a file. No FMU is needed."""
-    steady = file.with_values(_STEADY_PARAMETERS, "user", "steady")
+    steady = parameter_file.with_values(_STEADY_PARAMETERS, "user", "steady")
     drive = SimulatedDrive(model, steady)
     return DriveTestRig(drive, steady.values.ratio, steady.values.presliding, drive.get_outputs()[2])
 
