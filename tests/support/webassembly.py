@@ -43,7 +43,7 @@ class Instance:
     """Instance of a module in wasmtime, with the methods of `conftest.Fmu`."""
 
     def __init__(self, module: PageModule, binary: bytes, file: ParameterFile | None = None) -> None:
-        """file : whose numbers that no tool may set stand in the data, instead of the module's own"""
+        """file : parameter file whose hidden numbers (not settable) are in the data, in place of the module's"""
         import wasmtime
 
         self.store = wasmtime.Store()

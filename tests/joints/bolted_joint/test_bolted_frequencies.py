@@ -249,10 +249,10 @@ def test_flavours_agree(native: Path, fmus: Path) -> None:
 def swings(first: float, least: float) -> Array:
     """Distances between successive turning points of a block that is released at the displacement `first`.
 
-    They follow from the theorem of Jaeger and Ciavarella and from Masing's rule over all nodes. The force at a
-    turning point is q, the distance to the next one 2 s: the force falls by 2 B(s), B the first loading.
-    Between two turning points the work is zero: q s = 2 I(s), I the integral of B. The force at the next
-    turning point is q - 2 B(s). The series ends at a fraction `least` of the friction limit.
+    They follow from the theorem of Jaeger and Ciavarella and from Masing's rule over all nodes. From a
+    turning point with the force q to the next one at the distance 2 s, the force falls by 2 B(s), B the first
+    loading. Between two turning points the work is zero: q s = 2 I(s), I the integral of B. The force at the
+    next turning point is q - 2 B(s). The series ends at a fraction `least` of the friction limit.
     """
     nodes = BoltedJointSpring.for_interface_nodes(JOINT)
     approach, law = nodes.preloaded_approach(PRELOAD, 0.0), nodes.friction_law.foundation()
