@@ -201,7 +201,7 @@ def test_a_missed_event_misses_by_name(
 def test_times_that_are_not_stated_are_those_of_the_results(
     neuron: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """An experiment without times, tolerance and inputs uses the times of its results; the FMU stays at rest."""
+    """Without stated times, tolerance and inputs, an experiment has the times of its results, at rest."""
     files = {"y.csv": b"time,x,fired\n0,0,0\n0.5,0,0\n"}
     one = '<Experiment name="rest"><TransientSimulation/><References source="y.csv"/></Experiment>'
     found = proved(capsys, other_manifest(neuron, tmp_path / "n.fmu", one, **files))

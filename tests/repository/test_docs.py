@@ -120,7 +120,7 @@ def test_pictures_are_small_and_used() -> None:
 
 
 def test_the_house_is_drawn_as_it_is_built() -> None:
-    """The committed picture has the words and colours of the generator (matplotlib writes words as comments)."""
+    """The committed picture has the words and colours of the generator (words are comments in the file)."""
     spec = spec_from_file_location("figures", DOCS / "figures.py")
     assert spec is not None
     assert spec.loader is not None
@@ -373,7 +373,7 @@ setTimeout(() => {
 
 @needs("Chromium")
 def test_search_works_from_a_file(site: Path, tmp_path: Path) -> None:
-    """The search works on a page opened from a file: docs/javascripts/iframe-worker.js replaces the worker."""
+    """The search works on a page that is a file: docs/javascripts/iframe-worker.js replaces the worker."""
     start = (site / "index.html").read_text(encoding="utf-8")
     page = site / "asked.html"
     page.write_text(start.replace("</body>", f"{SEARCHED}</body>"), encoding="utf-8")

@@ -43,7 +43,7 @@ class Instance:
     """Instance of a module in wasmtime, with the methods of `conftest.Fmu`."""
 
     def __init__(self, module: PageModule, binary: bytes, file: ParameterFile | None = None) -> None:
-        """file : parameter file whose hidden numbers (not settable) are in the data, in place of the module's"""
+        """file : parameter file whose hidden numbers are in the data; None: those of the module"""
         import wasmtime
 
         self.store = wasmtime.Store()
