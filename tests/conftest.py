@@ -109,8 +109,8 @@ def pytest_make_collect_report(collector: pytest.Collector) -> Iterator[None]:
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Mark tests as slow that use a slow fixture. Other slow tests have the mark in their file.
 
-    Files with slow tests go first, the longest before all: the others fill up what the processes have left at
-    the end.
+    Files with slow tests run first, the longest of them at the start. Short tests then keep all processes
+    busy until the end.
     """
     for item in items:
         if not SLOW_FIXTURES.isdisjoint(getattr(item, "fixturenames", ())):
@@ -122,7 +122,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 def warnings_but_shape(printed: dict[str, Any]) -> dict[str, Any]:
-    """JSON object that `jointfmu new` prints, without the warning that Ra alone does not tell the shape."""
+    """JSON of `jointfmu new` without the warning that Ra alone does not give the height distribution."""
     others = [line for line in printed["warnings"] if "alone does not tell the shape" not in line]
     return printed | {"warnings": others}
 
@@ -260,8 +260,8 @@ def made_once(factory: pytest.TempPathFactory, name: str, make: Callable[[Path],
 def here_alone(versions: str = "23") -> Iterator[None]:
     """Build FMUs for this machine only; the fixture `native` has all platforms.
 
-    What is kept for all of them is taken from there; what else is compiled is kept apart.
-
+    Models that are compiled for all platforms are read from the cache. Models that are compiled here, for one
+    platform, have a cache folder of their own.
     versions : versions of FMI that are compiled
     """
     from jointfmu_fmu_src.native.compiled import compiled_models

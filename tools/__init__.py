@@ -10,7 +10,7 @@ __all__ = ["PARTS"]
 
 
 def _get_stored_result(key: str, compute_result: Callable[[], bytes]) -> bytes:
-    """Stored result of a long computation of the package `jointfmu`, or compute and store it."""
+    """Return the result that the cache has under `key`; if there is none, compute and store it."""
     from jointfmu_fmu_src.native.compiled.compiled_models import get_stored_result
 
     return get_stored_result(key, compute_result)

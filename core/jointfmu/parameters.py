@@ -166,7 +166,10 @@ class ParameterFile:
 
 
 def _name_origin(origin: str, source: str) -> str:
-    """Origin by its present name; a value of the user whose source says that it is a default is `default`."""
+    """Convert an origin in a file of an earlier version to its current name, one of ORIGINS.
+
+    `user` becomes `default` if the source says that the value is a default.
+    """
     if origin == "user" and source.startswith(_DEFAULT_SOURCE):
         return "default"
     return ORIGIN_ALIASES.get(origin, origin)

@@ -144,8 +144,9 @@ def _add_jacobian(
     results: Sequence[Any],
     evaluate_residuals: Callable[..., Sequence[Any]],
 ) -> None:
-    """Add the factors of the derivatives of `outputs`, and the rates of the outputs along a seed.
+    """Add two C functions for the Jacobian of the outputs with respect to inputs and states.
 
+    `outputs_jacobian` computes factors of the Jacobian, `outputs_jacobian_product` the product with a seed.
     The derivatives of the accelerations follow from those of the residuals (implicit function theorem).
     """
     count, names = model.state_count, [v.name for v in model.outputs]

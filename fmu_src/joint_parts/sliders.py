@@ -74,9 +74,9 @@ def _add_plane_slider_functions(function_graph: FunctionGraph) -> None:
 def _symbolic_return_mapping() -> tuple[list[ca.SX], tuple[list[ca.SX], ca.SX, list[ca.SX]], ReturnMapping]:
     """Return mapping of a slider with two tangential directions, for symbolic arguments.
 
-    Returns all arguments of the return mapping (force, fraction of the force retained, stiffness of the
-    increment, displacement increment, limits at start and end, stiffness, compliance), among them (force,
-    limit at end, increment), and the result.
+    Returns a list of all arguments (force, fraction of the force retained, stiffness of the increment,
+    displacement increment, limits at start and end, stiffness, compliance); three of these arguments again,
+    by themselves (force, limit at the end, displacement increment); and the result of the mapping.
     """
     force, displacement = make_symbols("q", 2), make_symbols("u", 2)
     retention, secant_stiffness = make_symbols("k", 2)

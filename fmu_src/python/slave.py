@@ -173,7 +173,11 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         return outputs
 
     def log_warnings(self, inputs: Mapping[str, float], outputs: Mapping[str, float]) -> None:
-        """Log each warning once. A warning that a lost start value causes is replaced by one of the loss."""
+        """Log each warning once.
+
+        If the host has set inputs to 0 in place of their start values, one warning about these inputs
+        replaces the warnings that follow from them.
+        """
         joint, variables = self.get_tabulated_joint(), {**inputs, **outputs}
         found = self.model.find_warnings(joint, variables)
         lost = self.find_lost_start_values()

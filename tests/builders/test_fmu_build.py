@@ -200,7 +200,7 @@ instance.free_instance()
 
 
 def test_a_process_in_which_a_python_fmu_runs_builds_the_same(fmus: Path, tmp_path: Path) -> None:
-    """The FMU's copy of pythonfmu, which has no libraries, is imported before the build."""
+    """The built files are equal, although the process has imported an FMU's copy of pythonfmu."""
     done = run_host(BESIDE_AN_INSTANCE, fmus / "GearContact.fmu", tmp_path)
     assert done.returncode == 0, done.stderr
     built = tmp_path / "python" / "GearContact.fmu"

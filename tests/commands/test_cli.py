@@ -267,8 +267,7 @@ def test_parameter_file(law_json, tmp_path, law):
 
 @each_law
 def test_law_as_text(run, law):
-    """The text has a header with units and one line of numbers per pressure, with a dash for undefined
-    quantities."""
+    """The text has a header with units and one line per pressure; a dash stands for an undefined quantity."""
     status, out, err = run("law", law, "--pressure", 1e6, 2e6)
     assert (status, err) == (0, "")
     heads, *lines = (re.split(r"\s\s+", line.strip()) for line in out.splitlines())
@@ -648,7 +647,7 @@ def test_a_closed_pipe_is_no_error():
 def test_ctrl_c_while_packages_are_imported(package, raised, tmp_path):
     """The command prints one line, even if Ctrl-C comes during the import of commands or packages.
 
-    Packages that are bound to C++ make an ImportError of it.
+    Packages with C++ bindings raise ImportError in place of KeyboardInterrupt.
     """
     (tmp_path / "any.fmu").touch()
     program = f"""

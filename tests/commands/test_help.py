@@ -181,7 +181,7 @@ def test_an_fmu_lists_its_parameters(name: str, capsys: pytest.CaptureFixture[st
 
 @pytest.mark.parametrize("law", LAWS)
 def test_a_law_lists_what_set_takes(law: str, capsys: pytest.CaptureFixture[str]) -> None:
-    """Every default, set as it is listed, is taken; points of a table are in files only."""
+    """`--set` accepts every default in the form of the list. Points of a table can be set in files only."""
     for name, row in listed(capsys, law).items():
         if isinstance(row["default"], list):
             continue

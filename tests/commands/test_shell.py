@@ -60,7 +60,7 @@ def test_an_interrupt_is_deferred_to_the_end_of_the_outermost_context():
 
 
 def test_long_work_prints_one_line_where_there_is_no_terminal(enter):
-    """In a pipe or a notebook, a command without output would look like a program that hangs."""
+    """In a pipe or a notebook, a long command prints a status line, so that it does not seem to hang."""
     enter(environment(**{progress.STATUS_DELAY_ENVIRONMENT_VARIABLE: "0.2"}))
     stream = enter(redirect_stderr(io.StringIO()))
     with progress.show_status("jointfmu report"):

@@ -124,7 +124,7 @@ def sheared(law, traction):
 
 @given(case=cases, tau=st.floats(1e-3, 1.5))
 def test_shear_traction(case, tau):
-    """Eqs. 39-43 with t = tau s and the load of each spot, clipped to full slip."""
+    """K_T agrees with Eqs. 39-43, with the shear force t = tau s of each spot clipped to full slip."""
     law, u = case
     paper = Paper(law)
     strength = tau * paper.law.mu * paper.H  # as a fraction of the friction of a fully plastic spot
@@ -339,7 +339,7 @@ def test_closed_forms(D):
 
 @pytest.mark.parametrize("k", range(2, 15))
 def test_near_the_ends_of_the_dimension(k):
-    """The exponent 1 - D/2 of Eq. 30 is singular at D = 2, and 3/2 - D/2 of the areas at D = 3."""
+    """Sums agree with quadrature near D = 2 and D = 3, where the exponents 1 - D/2 and 3/2 - D/2 vanish."""
     for D in (2 + 10.0**-k, 3 - 10.0**-k):
         law = changed(HU, {"surface.D": D})
         paper, s = Paper(law), law.spot_distribution()

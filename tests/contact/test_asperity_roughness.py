@@ -70,7 +70,7 @@ def test_tangential_stiffness_is_mindlins():
 
 @pytest.mark.parametrize("x", [1e-8, 1e-3, 0.0099, 0.0101, 0.3, 0.9, 0.999])
 def test_loss_factor_is_that_of_masings_loop(x):
-    """Loss factor by quadrature for the backbone T = 1 - exp(-s) with branches by Masing's rule."""
+    """The loss factor agrees with quadrature of a Masing loop of the first loading T = 1 - exp(-s)."""
     if x < 1e-4:
         assert roughness.loss_factor(x) == pytest.approx(2.0 * x / (3.0 * np.pi), rel=1e-7)
         return

@@ -171,7 +171,7 @@ def test_shape_factors_of_a_circle():
 
 @given(e=st.floats(0.0, 0.99))
 def test_shape_factors(e):
-    """Eqs. 22 and 23 against Hertz, by the load of Eqs. 17 and 18 for one deformation."""
+    """The factors of Eqs. 22 and 23 give Hertz's load (Eqs. 17 and 18) at one deformation."""
     f1, f2 = yu2022.ellipse_factors(e)
     K, E = ellipk(e**2), ellipe(e**2)
     R, modulus, F = 1.0, 1.0, 1.0
@@ -185,7 +185,7 @@ def test_shape_factors(e):
 
 @given(e=st.floats(0.0, 0.99))
 def test_onset_of_yield_follows_from_the_shape_factors(e):
-    """Eq. 27 (w_nec = K E R (K H/E')^2) is P_m = K H with Eqs. 16, 22, 23, but only with E^(+1/2)."""
+    """Eq. 27 (w_nec = K E R (K H/E')^2) follows from P_m = K H and Eqs. 16, 22, 23 if E has exponent +1/2."""
     f1, f2 = yu2022.ellipse_factors(e)
     K, E = ellipk(e**2), ellipe(e**2)
     strain = 1e-3
@@ -223,7 +223,7 @@ def test_contact_coefficient_scales_everything():
 
 @given(law=yu_laws, u=st.floats(0.1, 20.0))
 def test_area(law, u):
-    """Eqs. 45 and 54, and the elastic part by Eq. 59."""
+    """The real area obeys Eqs. 45 and 54, its elastic part Eq. 59."""
     paper, state = Paper(law), law.contact_quantities(u)
     z, a_l = paper.zeta * (paper.D1 + paper.D2), paper.a_nec * exp(u)
     # a_nec: brentq's 1e-13 in ln a
@@ -234,7 +234,7 @@ def test_area(law, u):
 
 @given(law=yu_laws, u=st.floats(0.1, 20.0))
 def test_elastic_load(law, u):
-    """Eq. 65 times lambda, with (1 - e^2)^(D1/4) as a factor; the D2 term is divided as printed."""
+    """The load is lambda times Eq. 65, with the factor (1 - e^2)^(D/4) for D1, and its inverse for D2."""
     paper = Paper(law)
     z = paper.zeta * (paper.D1 + paper.D2)
     a_l = paper.a_nec * exp(u)
@@ -255,7 +255,7 @@ def test_elastic_load(law, u):
 
 @pytest.mark.parametrize("plastic_area", ["geometric", "kogut_etsion"])
 def test_elastic_plastic_loads_of_equal_dimensions(plastic_area):
-    """Eqs. 62 and 63 with the exponent -d/n: powers of a for the curvature of the spot itself, D1 = D2."""
+    """For D1 = D2 the loads obey Eqs. 62 and 63 with the exponent -d/n and each spot's own curvature."""
     law = changed(YU, {"plastic_area": plastic_area, "e": 0.0})
     paper, s = Paper(law), law.spot_distribution()
     D, u = paper.D1, 5.0

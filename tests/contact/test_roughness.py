@@ -47,14 +47,14 @@ def test_height_of_both_surfaces():
 
 
 def test_mean_height_of_a_gaussian_surface():
-    """R_q/R_a by the integral of |z| with the normal density."""
+    """RQ_OVER_RA agrees with the integral of |z| over the normal density."""
     step = 1e-3
     mean = sum(2.0 * z * math.exp(-0.5 * z * z) * step for z in (step * (i + 0.5) for i in range(10_000)))
     assert math.sqrt(2.0 * math.pi) / mean == pytest.approx(roughness.RQ_OVER_RA, rel=1e-6)
 
 
 def test_level():
-    """Box specimen at 9 kN: F/(0.45 h) = 5.65e10 N/m."""
+    """The predicted stiffness of the box specimen at 9 kN is F/(0.45 h) = 5.65e10 N/m."""
     h = roughness.combined_height(load_default("bolted_joint").roughness)
     assert roughness.predicted_stiffness(8 * 9e3, h) == pytest.approx(5.65e10, rel=0.005)
 

@@ -97,7 +97,10 @@ def test_every_cast_iron_joint_of_known_roughness_is_met_within_a_factor():
 
 
 def test_the_plain_line_has_the_published_ratios():
-    """Ratios of p/(0.45 h) at 1 MPa to C = 0.65, m = 0.45, and to C = 0.3 and 0.5, m = 0.5 in um, kgf/cm2."""
+    """Ratios of p/(0.45 h) at 1 MPa to the measured law C p^m: C = 0.65, m = 0.45; C = 0.3 and 0.5, m = 0.5.
+
+    C and m are in um and kgf/cm2.
+    """
     p = np.array([1e6])
     expected = {"cast_iron.ground": 1.04, "cast_iron.scraped_fine": 0.66, "cast_iron.scraped_medium": 0.63}
     for joint in cases.joints_with_roughness():

@@ -56,7 +56,7 @@ def test_points_of_a_power_law_give_this_power_law(exponent, count):
 
 @pytest.mark.parametrize(("count", "error"), [(3, 0.02), (5, 5e-3), (9, 1.3e-3), (17, 4e-4)])
 def test_points_of_the_law_roughness_give_its_force_stiffness_and_approach(count, error):
-    """Four decades of pressure; docs/models.md states these errors."""
+    """A table over four decades of pressure has the errors that docs/models.md states."""
     points = np.geomspace(1e4, 1e8, count)
     law = law_of(points, evaluate_at_pressure(ROUGH, points)["K_N"] / ROUGH.A_0)
     p = np.geomspace(1e4, 1e8, 301)
@@ -140,7 +140,7 @@ def test_wrong_points_are_refused_in_one_line(pressure, stiffness, message):
 @pytest.mark.parametrize("exponent", [0.0, 1.0 / 3.0, 0.7, 1.0])
 @pytest.mark.parametrize("x", [1e-9, 1e-3, 0.1, 0.5, 0.95])
 def test_loss_factor_is_that_of_masings_loop(exponent, x):
-    """On first loading the stiffness is proportional to (1 - t)^n; loading and unloading by Masing's rule."""
+    """The loss factor is that of a Masing loop whose first loading has a stiffness ~ (1 - t)^n."""
     if exponent == 1.0:
         assert loss_factor(x, 1.0) == pytest.approx(roughness.loss_factor(x), rel=1e-12, abs=1e-16)
     if x < 1e-6:

@@ -19,7 +19,7 @@ PLATE += ["--preload", "30e3", "--sides", "rigid"]
 
 @pytest.fixture
 def table(tmp_path):
-    """Writes a file of points; gives its path as text."""
+    """Function that writes a file of points and returns its path as text."""
 
     def write(*lines):
         path = tmp_path / "points.csv"
@@ -31,7 +31,7 @@ def table(tmp_path):
 
 @pytest.fixture
 def made(tmp_path, capsys):
-    """Runs `jointfmu new`; gives the parameter file."""
+    """Function that runs `jointfmu new` and returns the parameter file."""
 
     def run(*words):
         path = tmp_path / "made.toml"

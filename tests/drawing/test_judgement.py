@@ -30,7 +30,10 @@ def rough(joint, h):
 
 
 def test_the_ratio_is_that_of_the_joint():
-    """K_zz of the joint with uneven pressure over F/(0.45 h); the law at the mean pressure is within 10 %."""
+    """The printed ratio is K_zz of the joint (uneven pressure) over F/(0.45 h).
+
+    It is within 10 % of the ratio of the law at the mean pressure.
+    """
     found = judge_joint_stiffness(BOLTED, [9e3, 15e3])
     for ratio, preload in zip(found.stiffness_comparison.ratio, (9e3, 15e3), strict=True):
         K = BoltedJointSpring.for_joint(BOLTED.values).evaluate(preload, 0.0, REST, REST)["K_zz"]
@@ -117,8 +120,8 @@ def test_beyond_the_hardness_and_the_nominal_area():
 
 
 def test_the_law_roughness_is_proven_in_a_range():
-    """Validated for x = p A_0/(E* h longest_wave) >= 0.3 and y = p longest_wave/(E* h) <= 1.5
-    (validity_stiffness.md)."""
+    """The command warns outside the validated range: x = p A_0/(E* h longest_wave) >= 0.3, y = p
+    longest_wave/(E* h) <= 1.5 (validity_stiffness.md)."""
     law = load_default("gear_mesh", "roughness").values
     modulus = 0.5 * 206e9 / (1.0 - 0.26**2) * law.h
     few, flat = 0.3 * modulus * law.longest_wave / law.A_0, 1.5 * modulus / law.longest_wave
@@ -144,7 +147,7 @@ def test_bolts_of_iso_898_1(d, area, proof):
 
 
 def test_a_stated_bolt_has_its_own_proof_load():
-    """ISO 898-1: 580 MPa of class 8.8 times 84.3 mm2, and 92.1 mm2 of the fine thread."""
+    """The proof load is 580 MPa (ISO 898-1, class 8.8) times 84.3 mm2, or 92.1 mm2 for the fine thread."""
     for name, expected in (("M12", 48.9e3), ("M12x1.25", 53.4e3)):
         source = f"stated on the drawing; {describe_stated_bolt(name, '8.8')}"
         load, title = proof_load(18e-3, source)
@@ -256,8 +259,8 @@ def test_pressures_of_the_users_nodes(tmp_path, capsys):
 
 
 def test_alike_bolts_with_unlike_pressures():
-    """Eight bolts of a frame: the hole with the higher pressure is named; under a moment, mirror images in y
-    may differ."""
+    """For a frame of eight bolts, the warning names the hole with the higher pressure. Under a moment, mirror
+    images in y may differ without a warning."""
     bolts = np.array([(x, y) for y in (-0.15, 0.0, 0.15) for x in (-0.1, 0.0, 0.1) if x or y])
     rng = np.random.default_rng(3)
     around = rng.uniform(-0.01, 0.01, (200, 2))

@@ -149,7 +149,10 @@ def test_calculix_refuses_more_rows_than_it_holds():
 
 @pytest.mark.parametrize("finish", ["ground", "milled", "turned", "lapped"])
 def test_calculix_gets_the_smallest_error_that_fits(finish, tmp_path, capsys, enter):
-    """The contact of an ordinary steel joint needs more than 200 rows at the default error."""
+    """The command chooses the smallest error whose table has at most 200 rows, CalculiX's limit.
+
+    The contact of an ordinary steel joint needs more rows at the default error.
+    """
     enter(chdir(tmp_path))
     new = "new bolted-joint --plate 80x40 --bolts 2xM10 --at 40x0 --grip 10 15 --hole 11 --sides rigid"
     assert cli.main([*new.split(), "--material", "steel", "--finish", finish, "--out", "c.toml"]) == 0

@@ -255,8 +255,11 @@ def test_contact_forces_are_checked_by_their_sums(plates, law):
 
 @needs("gmsh")
 def test_the_resultant_must_meet_the_contact(plates, law):
-    """With bolts at y = 15 mm and faces up to 30 mm, forces f1, f2 have their resultant at 15 mm (f1 -
-    f2)/(f1 + f2)."""
+    """Forces whose resultant lies outside the contact are refused.
+
+    The bolts are at y = +-15 mm, the faces end at 30 mm: the resultant of f1 and f2 lies at
+    15 mm (f1 - f2)/(f1 + f2).
+    """
     model, inside = pulled(plates, law, 0.3e3, -1e3)  # at 27.9 mm
     pressure = model.solve(inside, 1e6).pressure
     assert 0.0 < np.mean(pressure > 0.0) < 0.5

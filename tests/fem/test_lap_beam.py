@@ -50,7 +50,7 @@ def test_the_bolts_press_with_their_preload(joint):
 
 @needs("gmsh")
 def test_small_loads_meet_the_linear_mode(joint):
-    """Under this load the patches slip by less than 1e-4 of their displacement."""
+    """A small load (slip below 1e-4 of the displacement) gives the linear modal coordinate and shape."""
     q = 1e-9
     state = joint.apply_load(joint.at_rest(), q * joint.square)
     assert state.q == pytest.approx(q, rel=1e-5)

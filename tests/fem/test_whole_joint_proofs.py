@@ -31,7 +31,7 @@ from jointfmu.mechanics.sliders import Foundation
 
 
 def test_the_form_of_the_lap_is_that_of_the_scan():
-    """Cells of the file [um]: row 27 of 54 (y = -0.25 mm and 0.25 mm), column 100 of 246."""
+    """The gap is the mean of two cells of the scan: column 100 of 246, rows 27 and 28 of 54 (+-0.25 mm)."""
     gap, x = cases.form(), np.linspace(-61.206e-3, 61.206e-3, 246)[100]
     text = (files("jointfmu_models") / "reference" / "brake_reuss_lap_form.csv").read_text()
     rows = [line.split(",") for line in text.splitlines() if not line.startswith("#")]
@@ -60,7 +60,7 @@ def test_a_bar_of_any_width_has_the_frequency_of_a_square_one():
 
 
 def test_vdi_2230_vdi_2230():
-    """M16 through 2 x 20 mm at 60 kN preload, with 30 kN at its heads."""
+    """Load factor and bolt force by hand: M16 through 2 x 20 mm at 60 kN preload, with 30 kN at its heads."""
     factor, added, opens = vdi_2230(5.575e8, 2.487e9, 9.4e10, 30e3)
     assert (round(factor, 3), round(added, -2), round(opens, 2)) == (0.187, 5600.0, 1.23)
 
@@ -129,8 +129,8 @@ def test_a_bracket_slips_under_a_lever_as_its_elements_do(enter):
     """Loading to slip, three times as far, and back. Measured: 1.2 % of the force, 1.9 % of the heat, with
     coarse elements.
 
-    Friction has the normal force of the contact, however it bends: patches that open by themselves do not,
-    and find no equilibrium on the wide way of six directions at the end.
+    The friction limit follows the normal force of the contact, also where it bends. With patches that open
+    independently of the contact, the wide path of six directions at the end has no equilibrium.
     """
     enter(coarse.elements(JointFiniteElements, 0.7))
     attached, drawing, wrench = JOINTS["bracket"]

@@ -84,7 +84,7 @@ def test_calibrated_values_are_those_the_code_marks(joint):
 
 @each_joint
 def test_dumped_numbers_are_exact(joint):
-    """Read by the standard library alone, every float has the same bits."""
+    """Every float of a written file, read by the standard library alone, has the same bits."""
     file = load_default(joint)
     document = tomllib.loads(format_parameter_file(file))
     for name, value in flatten_parameters(file.values).items():
@@ -379,7 +379,7 @@ def test_places_that_cannot_be_written(tmp_path):
 
 
 def test_a_byte_order_mark_is_passed_over(tmp_path):
-    """Editors on Windows write a byte order mark."""
+    """A byte order mark, as editors on Windows write it, is ignored."""
     given = load_default("gear_contact")
     path = tmp_path / "joint.toml"
     path.write_text(format_parameter_file(given), encoding="utf-8-sig")

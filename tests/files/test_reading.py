@@ -93,7 +93,7 @@ def test_a_declared_size_is_refused(size: int, tmp_path: Path) -> None:
 
 
 def test_a_member_is_unpacked_to_its_declared_size_at_most(tmp_path: Path) -> None:
-    """The directory of the archive declares 10 bytes, the member has a million."""
+    """A member of a million bytes that declares 10 bytes is not unpacked beyond 10 bytes."""
     path = larger(archive(tmp_path / "lies.fmu", {"resources/x": ZEROS}), "resources/x", 10)
     with pytest.raises(ValueError, match=r"lies.fmu: is not an FMU \(Bad CRC-32"):
         archives.FmuMembers(path)["resources/x"]
@@ -112,7 +112,7 @@ def test_a_surface_in_a_zip_is_measured_too(tmp_path: Path) -> None:
 
 
 def test_other_compression_is_refused(tmp_path: Path) -> None:
-    """bzip2 and LZMA unpack a member completely, whatever size it declares."""
+    """bzip2 and LZMA are refused, because they unpack a member completely, whatever size it declares."""
     for method in (zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA):
         with pytest.raises(ValueError, match="expected deflate or none"):
             host.read_description(archive(tmp_path / f"{method}.fmu", {"resources/x": ZEROS}, method))

@@ -126,7 +126,7 @@ def test_single_open_loop_has_no_drift():
 
 
 def test_what_is_not_determined_is_said_by_name(loops):
-    """drive_scale and mean_over_peak act only as a product."""
+    """The result names the undetermined combination: drive_scale and mean_over_peak act only as a product."""
     found = torque_angle.fit(loops, fitted_names=[*torque_angle.FITTED_PARAMETERS, "mean_over_peak"])
     rows = {row["name"]: row["determined"] for row in found.unknown_rows()}
     assert rows == {
@@ -145,7 +145,7 @@ def test_what_is_not_determined_is_said_by_name(loops):
 
 
 def test_a_small_range_leaves_the_end_open(tmp_path):
-    """Up to 2 N.m the data hardly depend on K_FTS0."""
+    """Data up to 2 N.m leave K_FTS0 undetermined, on which they hardly depend."""
     torque, angle = measurements.loops(np.random.default_rng(1), amplitude=2.0, gap=0.0)
     path = save(tmp_path / "small.csv", "torque [N.m], angle [rad]", torque, angle)
     assert "K_FTS0" in torque_angle.fit(path).warnings()[0]
@@ -182,7 +182,7 @@ def test_written_file_says_where_it_comes_from(loops, tmp_path, enter, capsys):
 
 @pytest.mark.parametrize("direction", ["normal", "tangential"])
 def test_joint_stiffness_is_the_exported_one(direction):
-    """Checked also at 20 N preload, where the contact of most nodes is still closing."""
+    """The stiffness of the fit equals that of the FMU, also at 20 N preload, where most nodes still close."""
     joint = load_default("bolted_joint").values
     spring = BoltedJointSpring.for_interface_nodes(replace(joint, memory=False))
     loads = np.array([20.0, 2e3, 3e4])
@@ -213,7 +213,7 @@ def test_frequency_without_mass_keeps_the_surface(tmp_path):
 
 
 def test_series_stiffness_is_in_series(tmp_path):
-    """The stiffness is K/2 if the joint is as stiff as the structure."""
+    """Joint and structure act in series: the stiffness is K/2 if both have the stiffness K."""
     joint = load_default("bolted_joint").values
     P = np.array([1e4])
     K = float(preload.joint_stiffness(joint, P)[0])
@@ -424,7 +424,7 @@ def test_another_joints_file(loops, tmp_path, capsys):
 
 
 def test_the_mid_line_of_200_000_rows_takes_seconds():
-    """With one knot for every 20 samples, the dense matrix would need 3 GB."""
+    """The backbone of 200 000 samples is found in seconds: the number of knots is limited (else 3 GB)."""
     rng, phase = np.random.default_rng(0), np.linspace(0.0, 10.0 * np.pi, 200_000)
     torque, friction_torque = 25.0 * np.sin(phase), 0.3
     angle = (torque - friction_torque * np.sign(np.cos(phase))) / 8e3 + 1e-6 * rng.standard_normal(phase.size)

@@ -194,7 +194,7 @@ def test_noise_does_not_widen_the_loops():
 
 
 def test_motion_at_the_turning_points_is_part_of_the_doubt():
-    """Coarse triangular motion misses its corners by up to half a step."""
+    """The turning points of a coarsely sampled motion have a deviation of the order of half a step."""
     motion = np.abs((np.arange(200) * 0.07 + 0.03) % 4.0 - 2.0)
     found = branches.cut_branches([("", motion, 2.0 * motion)])
     assert np.all(found.start_motion_deviation > 0.02)
@@ -513,7 +513,7 @@ def test_titles_as_people_write_them(tmp_path, titles):
 
 @pytest.mark.slow
 def test_a_fit_that_says_nothing_is_not_written(tmp_path, capsys, enter):
-    """The record is of an elastic bar: the area of its loop is noise."""
+    """A fit to an elastic bar, whose loop area is noise, is refused and no file is written."""
     enter(chdir(tmp_path))
     motion = 1e-6 * np.sin(np.linspace(0.0, 6.0 * np.pi, 241))
     force = 1e9 * motion + np.random.default_rng(0).normal(0.0, 1.0, motion.size)

@@ -48,7 +48,7 @@ def test_hysteresis_appears(drive, amplitude):
 
 
 def test_force_acts_on_the_joint(drive):
-    """tau2 is the torque on the flange, opposite to the motion."""
+    """The printed force acts on the joint: it has the sign of the motion, opposite to tau2 on the flange."""
     assert (drive.motion_name, drive.force_name, drive.force_sign, drive.units) == (
         "phi2",
         "tau2",
@@ -62,7 +62,7 @@ def test_force_acts_on_the_joint(drive):
 
 @pytest.mark.parametrize("version", ["fmi2", "fmi3"])
 def test_without_memory_nothing_is_lost(native, version):
-    """The motion is computed from the force about a working point, because the contact carries no tension."""
+    """A joint without history has no loss in cycles of the force about a compressed working point."""
     fmu = native / version / "GearContact.fmu"
     found = loops.run_loops(fmu, "f", [100.0, 300.0], loops.CyclicPath(centre=500.0))
     assert (found.motion_name, found.force_name) == ("s_rel", "f")

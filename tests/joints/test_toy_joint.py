@@ -53,7 +53,7 @@ def test_a_joint_without_fmu_parts_cannot_be_built():
 
 
 def test_it_is_short():
-    """Length of all that its author writes: code, page, parameters, icon."""
+    """Code, page, parameters and icon of the toy joint have less than 100 lines together."""
     folder = Path(toy_joint.__file__).parent
     written = [path for path in folder.rglob("*") if path.suffix in (".py", ".html", ".toml", ".svg")]
     assert sum(len(path.read_text().splitlines()) for path in written) < 100

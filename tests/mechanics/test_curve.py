@@ -207,7 +207,7 @@ def test_energy_of_the_closing():
 
 
 def test_energy_beyond_the_ends_is_that_of_the_tangents():
-    """y = 1 + 2x + x^2 on [0, 1]; the energy inside is 7/3."""
+    """Beyond its ends, y = 1 + 2x + x^2 on [0, 1] has the energy of the end tangents; inside it is 7/3."""
     found = straight_ends().energy([-3.0, 0.0, 1.0, 11.0])
     # -3 + 2*9/2; 7/3 + 4*10 + 4*100/2
     np.testing.assert_allclose(found, [6.0, 0.0, 7.0 / 3.0, 7.0 / 3.0 + 240.0], rtol=1e-12)  # round-off

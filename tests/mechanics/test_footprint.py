@@ -130,12 +130,12 @@ def test_pressures_are_those_of_the_bolt_forces(preload, moment):
 
 
 def test_published_bolt_forces():
-    """Zhao 2018, section 3: 15 kN and 4500 N.m give 20 and 10 kN."""
+    """A preload of 15 kN and a moment of 4500 N.m give bolt forces of 20 and 10 kN (Zhao 2018, section 3)."""
     assert row_forces(JOINT, 15e3, 4500.0) == pytest.approx((20e3, 10e3), rel=1e-15)
 
 
 def test_published_pressures():
-    """Zhao 2018, section 3: 7.98 MPa at the holes, 0.62 MPa between bolts, at 9 kN (both fitted)."""
+    """At 9 kN: 7.98 MPa at the holes, 0.62 MPa between bolts (Zhao 2018, section 3; both are fitted)."""
     shape = pressure_distribution(JOINT.pattern)
     p = preload_pressure(JOINT, shape, 9e3, 0.0)
     assert np.max(p) == pytest.approx(7.98e6, rel=FIT)
@@ -199,7 +199,10 @@ def test_rotation_is_the_energy_of_a_unit_twist(position, normal, axis, stiffnes
 
 
 def test_rotation_is_the_corrected_eq_45():
-    """sum R_a^2 (K_N (cos a sin b)^2 + K_T (1 - (cos a sin b)^2)), alpha and beta from the normals."""
+    """The rotational stiffness is Eq. 45 of Hu 2023, corrected, with the angles a and b from the normals:
+
+    sum R_a^2 (K_N (cos a sin b)^2 + K_T (1 - (cos a sin b)^2)).
+    """
     theta, w, r, slope = np.linspace(0.0, 0.7, 40), 2e-4, 0.017, 0.01
     a, b = (r + w) * np.ones(40), (r - w) * np.ones(40)
     x = np.stack([a * np.cos(theta), b * np.sin(theta), np.linspace(0.0, 0.01, 40)], axis=-1)
@@ -236,8 +239,10 @@ def test_calibrated_values_are_marked():
 
 @pytest.mark.parametrize("moment", [True, False])
 def test_merged_nodes_keep_the_sums(moment):
-    """Area, pressure and second moments of area in total; node by node for those that only mirror images
-    share."""
+    """Merging keeps the total area, pressure and second moments of area.
+
+    Without a moment, nodes of equal preload pressure are merged; else only mirror images.
+    """
     shape = pressure_distribution(JOINT.pattern)
     merged = shape.merge_nodes(keeps_moment_pressure=moment)
     mirrors = 2 if moment else 4  # the frame's axes; a moment tells its two rows apart

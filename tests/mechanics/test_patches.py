@@ -143,7 +143,10 @@ def spring() -> BoltedJointSpring:
 )
 @pytest.mark.parametrize("name", CONTACTS)
 def test_force_and_stiffness_are_those_of_all_nodes(spring, name, states, force, stiffness):
-    """160 points, over preload, moment, displacement and tilt: about four times the benchmark's values."""
+    """160 points keep force and stiffness of all nodes under preload, moment, displacement and tilt.
+
+    The tolerances are about four times the benchmark's deviations.
+    """
     shape = contact(name)
     states = contact_patches.ranges(contact_patches.opening_moment(shape))[states]
     mean = contact_patches.mean_pressure(spring)
@@ -215,8 +218,8 @@ def test_gross_slip_about_poles_inside_has_the_force_of_all_nodes(name, most):
 def test_friction_of_few_patches_is_that_of_all_nodes(spring, plate, motion):
     """22 patches with the FMU's sliders: forces within 1 % of gross slip, loop areas within 3 %.
 
-    A turn about a pole under a bolt has less friction, and 3 % of it. Every second of the benchmark's ways,
-    the last one with them.
+    In a rotation about a pole under a bolt the friction is smaller, and the forces are within 3 % of it.
+    Every second displacement of the benchmark is checked, and the last one.
     """
     ways = contact_patches.DISPLACEMENTS[1::2]
     shape = contact(plate)

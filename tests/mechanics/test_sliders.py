@@ -87,7 +87,7 @@ def test_small_loops_lose_with_the_third_power():
 def test_force_and_load_that_grow_in_a_line_do_not_slip(sliders, slope, start):
     """dT/dN = slope mu < 0.4 mu: T = slope mu dN with hardly any loss, and the same on return.
 
-    What the springs of one height lose and do not come back with is a part of their force: 1e-5 of the whole.
+    Springs of one height lose a small part of their force, 1e-5 of the total, which does not return.
     """
     end = 0.6
     path = np.array([[start, 0.0, 0.0], [end, slope * FRICTION / RATIO * (end - start), 0.0]])
@@ -137,7 +137,7 @@ def test_less_load_lets_an_inclined_contact_slip_from_its_edge(sliders, slope, e
 
 
 def test_unloading_and_reloading_are_twice_the_backbone(sliders):
-    """Masing's rule, which Mindlin's sphere follows at constant load."""
+    """At constant load, unloading and reloading are the doubled first loading, as for Mindlin's sphere."""
     u = float(displacement(APPROACH, 0.8))
     way = np.linspace(u, -u, 41)
     found = follow_path(sliders, along(0.0, *way))[0][:, 0]
@@ -222,7 +222,10 @@ def test_a_slipping_force_turns_towards_the_shift():
 
 
 def test_along_one_direction_work_is_stored_or_lost_while_the_limit_changes():
-    """One increment against 1000 parts of it: trapezoidal rule for the work, K constant."""
+    """Along one direction, the work of one increment (trapezoidal rule in 1000 parts) is stored or lost.
+
+    The stiffness K is constant, the friction limit changes.
+    """
     rng, K, parts = np.random.default_rng(3), 2.0, 1000
     start, end = rng.uniform(0.5, 1.5, (2, 300))
     first, way = start * rng.uniform(-1.0, 1.0, 300), rng.uniform(-2.0, 2.0, 300)
@@ -248,7 +251,7 @@ def test_along_one_direction_work_is_stored_or_lost_while_the_limit_changes():
 @pytest.mark.slow
 @pytest.mark.parametrize("name", MOTIONS)
 def test_combined_motions_follow_many_springs(name):
-    """Load and displacement oscillate together: 126 sliders against 20 000 springs."""
+    """If load and displacement oscillate together, 126 sliders agree with 20 000 independent springs."""
     path = MOTIONS[name]
     forces, loss = follow_springs(path)
     tractions, losses, _ = follow_path(foundation(0.1), path)

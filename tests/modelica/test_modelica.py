@@ -239,8 +239,8 @@ def test_command_writes_the_library_of_another_joint(tmp_path: Path, capsys: pyt
 
 
 def test_command_takes_the_preload_of_the_file(tmp_path: Path):
-    """Its record comes first, so the component shows it; the shipped systems use the same records
-    as before."""
+    """The record of the file's preload comes first and is the component's default; the shipped systems keep
+    their records."""
     text = format_parameter_file(load_default("bolted_joint")).replace(
         "preload = { value = 0.0", "preload = { value = 43.1e3"
     )
@@ -255,7 +255,8 @@ def test_command_takes_the_preload_of_the_file(tmp_path: Path):
 
 
 def test_components_leave_the_choice_of_states_to_the_tool(files: dict[str, str]):
-    """`prefer` makes OpenModelica choose states of a drive with held motor that have no equation."""
+    """No component has `stateSelect = prefer`: with a held motor, OpenModelica would choose states without an
+    equation."""
     for name, text in files.items():
         default = re.search(r"parameter StateSelect stateSelect=(.*?) \"", text)
         assert default is None or default.group(1) == "StateSelect.default", name
@@ -263,7 +264,10 @@ def test_components_leave_the_choice_of_states_to_the_tool(files: dict[str, str]
 
 
 def test_no_equation_sums_over_a_function_that_returns_an_array(files: dict[str, str]):
-    """Tools expand such a sum to one call for each entry: 44 calls for each drive and evaluation."""
+    """No equation has a sum over a function call that returns an array.
+
+    Tools expand such a sum to one call for each entry: 44 calls for each drive and evaluation.
+    """
     for name, text in files.items():
         assert not re.search(r"(sum|max|min)\(JointStiffness\.Functions\.", text), name
 

@@ -65,7 +65,10 @@ def test_the_compiled_joint_gives_the_numbers_of_the_python_law(kind, law, fmu):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_any_motion_has_the_numbers_of_the_python_law(name):
-    """Inputs change together, by little and by much, then one by one. Contacts stick, slip, open, close."""
+    """Compiled joint and Python law agree along random motions: inputs change together, then one by one.
+
+    The contacts stick, slip, open and close.
+    """
     file, corners = load_default(MODELS[name].joint), random_inputs(name, 12, seed=7)
     model = MODELS[name].with_parameters(file.joint, file.values)
     rows = [

@@ -114,7 +114,7 @@ def test_each_exports_every_function_of_the_standard_and_nothing_else(native: Pa
 
 @pytest.mark.parametrize("platform", compiler.ZIG_TARGETS)
 def test_no_static_library_of_the_compiler_is_linked_in(platform: str, tmp_path: Path) -> None:
-    """Then the list of licences is complete: only our objects and stubs of the system are linked."""
+    """Only the FMU's own objects and stubs of the system are linked, so the list of licences is complete."""
     source = "#include <math.h>\nint run(double x);\nint run(double x) { return sin(x) > 0.5; }\n"
     (tmp_path / "run.c").write_text(source)
     own = Path(compiler.__file__).with_name("windows.c")

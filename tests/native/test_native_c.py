@@ -173,7 +173,7 @@ class Builder:
     """Compiler of sources and hosts, each of them once.
 
     work : folder of hosts and programs
-    kept : folder of the objects of joints, which later runs with equal sources take from there
+    kept : folder that stores the object files of joints, for later runs with equal sources
     """
 
     def __init__(self, work: Path, kept: Path) -> None:
@@ -183,7 +183,7 @@ class Builder:
     def _objects(self, compiler: str, name: str, *options: str) -> list[Path]:
         """Object files of a joint; a warning is an error.
 
-        Zig keeps what it compiles itself, if equal sources have equal paths.
+        Zig caches its own object files, if equal sources have equal paths.
         """
         files = c_of(name).files
         units = [file for file in files if file.endswith(".c")]
@@ -383,7 +383,10 @@ def check_mutations(builder: Builder, compiler: str, name: str, version: str, co
 def test_a_mutated_state_is_refused_or_used_without_harm(
     sanitizing: str, builder: Builder, name: str, version: str
 ) -> None:
-    """The checksum of the changed state is right, because it only protects against accidents."""
+    """A changed state with a correct checksum is refused, or used without a fault.
+
+    The checksum protects against accidents only.
+    """
     check_mutations(builder, sanitizing, name, version, MUTATIONS[name])
 
 

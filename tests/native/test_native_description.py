@@ -537,7 +537,8 @@ def test_the_flanges_of_each_joint(name: str) -> None:
 
 
 def test_flows_are_signed_as_the_standard_asks(name: str) -> None:
-    """Inflow acts on the element and winds it up; outflow is applied by the element against the motion."""
+    """Flows have the sign of FMI 3.0: an inflow acts on the element and winds it up, an outflow is applied by
+    the element against the motion."""
     rest = {v.name: 0.0 for v in MODELS[name].inputs} | CASES[name].numbers.rest
     for terminal in etree.fromstring(pictures(name)["terminalsAndIcons.xml"]).find("Terminals"):
         members = {m.get("memberName"): m for m in terminal.findall("TerminalMemberVariable")}
@@ -712,7 +713,8 @@ def test_a_browser_draws_every_chart_of_the_page(tmp_path: Path, name: str) -> N
 
 
 def test_a_joint_may_say_nothing_of_flanges_and_plot() -> None:
-    """Then the page has no terminals, and its plot shows the first output over the ramped input."""
+    """Without flanges and panels, the page has no terminals, and its plot shows the first output over the
+    ramped input."""
     model = MODELS["GearContact"]
     text = make_documentation(replace(model, name="Other"), load_default(model.joint))["index.html"].decode()
     assert "<h3>Terminals</h3>" not in text

@@ -84,7 +84,10 @@ def test_each_way_of_leaving_the_tables_is_warned_of_once_as_in_the_package(
 def test_an_input_at_zero_in_place_of_its_start_value_is_warned_of_once(
     host: Host, fmu: Host, version: str
 ) -> None:
-    """As tools leave it that set all inputs to 0 before a run; no second warning names that temperature."""
+    """An input at 0 in place of its start value gives one warning, and no second one about its effects.
+
+    Some tools set all inputs to 0 before a run.
+    """
     name = "HarmonicDriveSpring"
     zeros = dict.fromkeys((v.name for v in MODELS[name].inputs), 0.0)
     for instance in (host(name, version), fmu(name)):
@@ -163,7 +166,7 @@ def test_a_refusal_reads_the_same_in_every_flavour(
 def test_round_off_below_a_minimum_counts_as_the_minimum_in_every_flavour(
     host: Host, fmu: Host, version: str, exchange: bool
 ) -> None:
-    """A solver that varies an input at its minimum goes on."""
+    """A solver that varies an input by round-off below its minimum gets no error."""
     bounded = [(m, v) for m in NAMES for v in MODELS[m].inputs if math.isfinite(v.minimum)]
     assert {v.name for _, v in bounded} >= {"preload", "temperature"}
     for name, variable in bounded:
@@ -212,7 +215,7 @@ def test_inputs_too_large_for_an_output_are_named(host: Host, version: str) -> N
 
 
 def test_a_refusal_lists_the_largest_inputs_alone(host: Host, version: str) -> None:
-    """With all inputs, the reason at the end of the line would be cut off."""
+    """A refusal names the largest inputs only: with all inputs, the reason at the end would be cut off."""
     instance = host("HarmonicDriveSpring", version).start(GOOD["HarmonicDriveSpring"])
     instance.set_values({"phi1": 4.0, "w1": 5.0, "phi2": 1e308, "w2": 3.0})
     said = instance.refused(instance.step)

@@ -1,8 +1,8 @@
 """Binaries for Windows (in Wine) and Linux aarch64 (in QEMU) against Linux on x86_64.
 
 The hosts in tests/native/hosts are built for each platform by the same compiler as the FMUs. macOS is not
-run. Where there is no C library of aarch64 to load a binary with, programs that need none are run all the
-same: the FMU's own sources, a host and the little of a C library that a run calls (bare.c), linked into one.
+run. Without a C library of aarch64, no binary can be loaded. Then programs without that library are run: the
+FMU's own sources, a host, and the few C library functions that a run calls (bare.c), linked together.
 """
 
 import os

@@ -257,8 +257,8 @@ def test_input_derivatives_that_cannot_be_used_are_refused(host: Host) -> None:
 def test_a_parameter_changed_between_steps_is_as_if_it_had_always_been_so(
     host: Host, name: str, version: str, exchange: bool
 ) -> None:
-    """Outputs are those of an instance that started with the changed value; with history, the earlier path
-    stays as it was."""
+    """After a change between steps, the outputs are those of an instance that started with the changed value;
+    the history of the earlier path is kept."""
     instance, fresh = (host(name, version, exchange=exchange) for _ in range(2))
     given = STATE[name] | CASES[name].tuning.also
     before = instance.start(given).get()

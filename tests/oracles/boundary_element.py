@@ -61,9 +61,9 @@ def press(heights, pressures, hardness=np.inf, iterations=200):
     """Contacts of a rigid rough surface (heights over the side) with the half-space, at increasing mean
     pressures.
 
-    Elastic by Polonsky and Keer's conjugate gradients. Where that exceeds the hardness, the pressure is cut
-    off there, from the elastic solution on (Kato's solver: perfectly plastic spots, whose flow does not lift
-    their surroundings).
+    The elastic solution uses Polonsky and Keer's conjugate gradients. If its pressure exceeds the hardness,
+    Kato's solver continues from it with the pressure limited to the hardness: perfectly plastic spots, whose
+    flow does not lift their surroundings.
     """
     surface = np.ascontiguousarray(heights - np.mean(heights))
     model = half_space(surface.shape[0])
@@ -108,9 +108,9 @@ def _contact(model, surface, p, hardness):
 def bonded(touching, nu=None, axis=2, free=False):
     """Stiffness per nominal area (E* over side) for small motions that do not change the contact area.
 
-    What vibration and ultrasound see, and a plastic contact on unloading: all that touches moves by one.
-    With nu, along an axis (0, 1 tangential, 2 normal) of one elastic body against a rigid one, other
-    tractions zero (as they are between two equal bodies).
+    This is the stiffness in vibration and ultrasound, and of a plastic contact on unloading: all points in
+    contact have unit displacement. With nu, the motion is along an axis (0, 1 tangential, 2 normal) of one
+    elastic body against a rigid one, with zero tractions along the other axes (as between two equal bodies).
     """
     model = half_space(touching.shape[0], nu)
     place = (touching,) if nu is None else (touching, axis)

@@ -98,7 +98,7 @@ def identify(
 
     preload  : [N] per bolt, without a moment
     measured : (6) [Hz] frequencies by mode
-    trials   : at most so many lengths are tried, besides those for the difference quotients
+    trials   : largest number of trial lengths, without those for the difference quotients
     solve    : function that computes the frequencies
     """
     first = lengths_of(start)

@@ -1,8 +1,7 @@
 """CalculiX (`ccx`): exported joints compared with the package, and finite-element bodies as its input.
 
 Cases: two rigid bodies on the springs of the joint's nodes; two elastic blocks on springs between the nodes
-       of their
-meshes; two elastic blocks in contact by the tabulated law. CalculiX prints seven digits.
+of their meshes; two elastic blocks in contact by the tabulated law. CalculiX prints seven digits.
 """
 
 import os
@@ -53,7 +52,7 @@ def run_deck(deck: Path) -> dict[int, np.ndarray]:
 def solve_deck(deck: Path, patience: float = 300.0) -> str:
     """Run a deck for at most `patience` [s]; returns what it printed.
 
-    Raises RuntimeError with the end of what CalculiX said if it did not finish.
+    Raises RuntimeError with the last printed lines if CalculiX did not finish.
     """
     done = subprocess.run(
         [find_calculix() or "ccx", "-i", deck.stem],
@@ -104,7 +103,8 @@ def rigid_bodies(folder: Path, preload: float, moment: float, normal: str = "z")
 def meshed_blocks(folder: Path) -> list[Case]:
     """Results of two elastic blocks on springs between their meshes, pulled apart by a uniform traction.
 
-    Everything is uniform, so the pull moves the top by F/K_zz and the stretch F 2 h/(E A).
+    The traction is uniform, so the force F moves the top by F/K_zz plus the elongation F 2 h/(E A) of the
+    blocks.
     """
     deck, pairs, area = mesh_blocks()
     pressure = 8.0 * STATES[0][0] / area.sum()

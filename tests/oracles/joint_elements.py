@@ -127,7 +127,7 @@ class PlateJoint:
     ) -> "PlateJoint":
         """Make the joint as the command makes it, with element sizes divided by `refinement` [1].
 
-        elements : the contact has one point for each element in place of nine
+        elements : True: one contact point for each element; False: nine points
         """
         seen: dict[str, object] = {}
         real = plate_finite_elements.compute_joint

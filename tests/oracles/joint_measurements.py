@@ -29,7 +29,7 @@ def file(kind, values):
 
 @cache
 def joint_law():
-    """Law of the loops of a joint in shear, with the true parameters."""
+    """Hysteresis law of a joint in shear, with the true parameters."""
     return loop.make_shear_loop_law(file("bolted_joint", JOINT).values, PRELOAD)[0]
 
 

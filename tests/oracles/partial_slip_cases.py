@@ -1,10 +1,9 @@
 """Partial slip of rough contacts: boundary elements against the prediction from the normal curve.
 
 The friction coefficient is 1: it scales forces and displacements alike. Jaeger and Ciavarella predict the
-                               force
-q(u) = P(delta) - P(delta - kappa u), kappa = K_T/K_N, at a constant load. The unloading branch of a loop is
-the backbone, twice as large (Masing). Two more predictions: the package's sliders, and Mindlin's sphere with
-the same load and initial stiffness.
+force q(u) = P(delta) - P(delta - kappa u), kappa = K_T/K_N, at a constant load. The unloading branch of a
+loop is the backbone, twice as large (Masing). Two more predictions: the package's sliders, and Mindlin's
+sphere with the same load and initial stiffness.
 """
 
 from dataclasses import dataclass

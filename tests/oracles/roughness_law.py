@@ -133,7 +133,7 @@ def two_scale_stiffness(law, p, h, wave):
 def stiffness_with_tail(law, p):
     """Stiffness per area [N/m3] of the law with the tail of the height distribution that many hills have.
 
-    1/gamma (y/0.2)^-0.08 for 1/gamma: what boundary elements of up to 1024 hills have from y = 0.001 to 1.
+    1/gamma is replaced by 1/gamma (y/0.2)^-0.08, as in boundary elements of up to 1024 hills, y = 0.001 to 1.
     """
     y = p * law.longest_wave / (contact_modulus(law.side1, law.side2) * law.h)
     return level(law, p) + p / (law.gamma * law.h) * ((y / 0.2) ** -0.08 - 1.0)

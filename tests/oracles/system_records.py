@@ -167,7 +167,7 @@ def make_chirp_record(folder: Path, seed: int, correlation: float = 0.0) -> tupl
 
 
 def make_correlated_record(folder: Path, seed: int) -> tuple[Path, Path]:
-    """The same with correlated noise."""
+    """System file with start values and record of the linear system under a chirp, with correlated noise."""
     return make_chirp_record(folder, seed, 0.8)
 
 
@@ -204,5 +204,5 @@ def fit_case(name: str, seed: int, folder: Path, hold_out: float = 0.0) -> FitRe
 
 
 def count_held(fit: FitResult, truth: dict[str, float]) -> dict[str, bool]:
-    """{parameter: whether its interval holds the true value}."""
+    """{parameter: whether its interval contains the true value}."""
     return {name: low <= truth[name] <= high for name, (low, high) in fit.confidence_intervals.items()}

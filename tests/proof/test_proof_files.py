@@ -237,7 +237,7 @@ def test_the_text_says_how_many_and_how_near(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["TorqueProfile", "ForceProfile", "AngleProfile"])
 def test_a_course_over_time_shows_itself_in_its_proof_alone(name: str) -> None:
-    """The file of a system that states no pulse and no reversal has none in its experiments."""
+    """The experiments of a load over time show its shape, although the default file has heights of zero."""
     model, file = given(name)
     assert not any(value for key, value in file.values_by_name.items() if key.endswith("height"))
     one = made(name)[1]

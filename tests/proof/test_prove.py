@@ -160,7 +160,7 @@ def test_a_library_that_computes_something_else_fails_by_name(
 def test_a_library_that_crashes_fails_in_one_line(
     fmu: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Machine code is overwritten by the instruction that traps."""
+    """A library that crashes (its code is overwritten with trap instructions) fails with one line."""
 
     def change(name: str, data: bytes) -> bytes:
         if name != LIBRARY:
@@ -319,7 +319,7 @@ def resealed(source: Path, target: Path, parameter: str, value: float) -> Path:
 def test_an_fmu_agrees_with_the_parameter_file_that_it_is_of(
     native: Path, fmus: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The references come from the parameter file, not from the FMU."""
+    """An FMU passes with its parameter file, from which the references are then computed."""
     own = KINDS[MODELS[NAME].joint].default_file()
     for path in (native / "fmi3" / f"{NAME}.fmu", fmus / f"{NAME}.fmu"):
         assert_all_pass(proved(capsys, path, "--against", str(own)))
@@ -361,7 +361,8 @@ STEP = (
 def test_a_manifest_of_an_older_draft_is_read(
     fmu: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Times as attributes, no tolerance, unquoted columns, an address with an escape, a start time."""
+    """Manifests of older drafts are read: times as attributes, no tolerance, unquoted columns, an escaped
+    address, a start time."""
     with zipfile.ZipFile(fmu) as archive:
         text, drive = (
             archive.read(f"{REFERENCE_FOLDER}/experiments/01_load_ramp_{x}.csv").decode()
@@ -478,7 +479,7 @@ def counter(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_an_fmu_of_another_kind_is_proved_by_its_manifest(
     counter: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """x = 3 rate t for a parameter set with an integer, and x = 0 if it is switched off."""
+    """An FMU of another tool passes: x = 3 rate t for a parameter set with an integer, 0 if switched off."""
     space = "http://ssp-standard.org/SSP1/SystemStructureParameterValues"
     values = {
         "three.ssv": '<v:Parameter name="times"><v:Integer value="3"/></v:Parameter>',

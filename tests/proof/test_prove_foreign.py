@@ -102,7 +102,10 @@ def test_events_of_all_kinds_are_met(
 def test_an_event_that_nearly_meets_a_communication_point_is_met(
     neuron: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The FMU samples every 0.1 s by addition, so its times differ by round-off from the grid of 0.05 s."""
+    """Events are met whose times differ by round-off from communication points.
+
+    The FMU adds 0.1 s for each sample; the communication points are multiples of 0.05 s.
+    """
     events = np.cumsum(np.full(30, 0.1))
     apart = np.abs(events - 0.05 * np.round(events / 0.05))
     assert np.any((apart > 0.0) & (apart < 1e-14))
@@ -135,7 +138,8 @@ def test_inputs_jump_and_are_switched_off(
 def test_an_input_that_rises_is_straight_in_model_exchange(
     neuron: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """x' = t/5 - x; co-simulation that holds the input for a step of 50 ms misses this tolerance."""
+    """Model exchange interpolates an input linearly: x' = t/5 - x is met at a tolerance that co-simulation
+    with inputs held for 50 ms misses."""
     x = (TIME - 1.0 + np.exp(-TIME)) / 5.0
     files = {"u.csv": b"Time,u\n0,0\n3,0.6\n", "y.csv": csv(TIME, {"x": x})}
     path = other_manifest(neuron, tmp_path / "n.fmu", experiment("rise", FILES), **files)
@@ -197,7 +201,7 @@ def test_a_missed_event_misses_by_name(
 def test_times_that_are_not_stated_are_those_of_the_results(
     neuron: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """No time, no tolerance and no input are stated: the FMU stays at rest."""
+    """Without stated times, tolerance and inputs, an experiment has the times of its results, at rest."""
     files = {"y.csv": b"time,x,fired\n0,0,0\n0.5,0,0\n"}
     one = '<Experiment name="rest"><TransientSimulation/><References source="y.csv"/></Experiment>'
     found = proved(capsys, other_manifest(neuron, tmp_path / "n.fmu", one, **files))

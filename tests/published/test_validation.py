@@ -123,7 +123,7 @@ def test_values_are_those_of_the_papers():
 
 
 def test_table_3_is_divided_by_the_experiment(rows):
-    """Zhao 2018, Table 3: the error is 100 (predicted/measured - 1)."""
+    """Errors of frequencies are those of Zhao 2018, Table 3: 100 (predicted/measured - 1)."""
     for row in rows:
         if row.point.quantity == "frequency_error":
             given = row.point.where

@@ -432,7 +432,7 @@ def test_an_opened_file_is_reset_and_saved(shown: Browser, drawings: dict[str, s
 
 @pytest.mark.parametrize("module", EVERY, ids=lambda m: f"{m.model.name}, {m.parameter_files[0].law}")
 def test_a_number_beside_the_code_enters_the_data_as_itself_alone(module: PageModule) -> None:
-    """So the page may write the number there."""
+    """The page may set a number that is not compiled: it changes its own value in the data only."""
     file = module.parameter_files[0]
     if "friction_1" in file.values_by_name:  # its upper limit is friction_coulomb
         file = file.with_values({"friction_coulomb": 0.1}, "user", "x")

@@ -120,7 +120,7 @@ def test_pictures_are_small_and_used() -> None:
 
 
 def test_the_house_is_drawn_as_it_is_built() -> None:
-    """Words and colours of the committed picture (matplotlib writes each word into a comment)."""
+    """The committed picture has the words and colours of the generator (words are comments in the file)."""
     spec = spec_from_file_location("figures", DOCS / "figures.py")
     assert spec is not None
     assert spec.loader is not None
@@ -190,7 +190,7 @@ def python_of(folder: str) -> str:
 
 
 def test_every_part_of_a_joint_is_explained() -> None:
-    """Modules that tools use, and parts that the builders use."""
+    """The documentation names every module of a joint that tools use, and every part that builders use."""
     asked = set(
         re.findall(
             r'(?<!def )\bload_tool_module\((?:[^()"]|\([^()]*\)|\[[^]]*\])*"(\w+)"', python_of("tools")
@@ -373,7 +373,7 @@ setTimeout(() => {
 
 @needs("Chromium")
 def test_search_works_from_a_file(site: Path, tmp_path: Path) -> None:
-    """Browsers start no worker from a file; docs/javascripts/iframe-worker.js replaces it."""
+    """The search works on a page that is a file: docs/javascripts/iframe-worker.js replaces the worker."""
     start = (site / "index.html").read_text(encoding="utf-8")
     page = site / "asked.html"
     page.write_text(start.replace("</body>", f"{SEARCHED}</body>"), encoding="utf-8")

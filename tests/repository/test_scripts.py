@@ -30,7 +30,7 @@ def table_lines(text: str) -> list[str]:
 
 
 def test_interface_laws_are_compared_with_brentq():
-    """The benchmark itself checks that both methods find the same spots."""
+    """The benchmark runs and checks that its own inversion and brentq find the same spots."""
     lines = run("benchmarks/interface_laws.py", "--quick").splitlines()
     assert [line.split()[0] for line in lines[2:]] == ["zhao2018", "hu2023", "yu2022", "roughness", "table"]
     assert all(float(line.split()[-1]) > 0.0 for line in lines[2:])
@@ -39,7 +39,7 @@ def test_interface_laws_are_compared_with_brentq():
 @pytest.mark.slow
 @needs("Linux on x86_64")
 def test_native_fmus_are_timed_in_every_flavour():
-    """The C host fails if a call of an FMU fails."""
+    """The benchmark times every flavour; its C host ends with an error if a call of an FMU fails."""
     table, _, targets = run("benchmarks/native_fmus.py", "--quick").partition("\n\n")
     rows = [line.split() for line in table.splitlines()[2:]]
     flavours = ("fmi2", "fmi3", "python")

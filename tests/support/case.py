@@ -10,8 +10,8 @@ Inputs = dict[str, float]
 class Beyond(NamedTuple):
     """Input far beyond the end of the table: its output, its stiffness and the warning.
 
-    inverse : the stiffness is that of the input over the answer, not of the answer over the input
-    lever   : lever arm of the input, by which the slope of the output is larger than the stiffness
+    inverse : the stiffness is input over output (input: force), not output over input
+    lever   : lever arm of the input: slope of the output over the stiffness
     """
 
     driven: str
@@ -44,13 +44,13 @@ class Description:
     """Expected content of an FMU's model description.
 
     inputs, results, parameters : the contract, {variable: unit}; the FMU may have more
-    calibration : some of the parameters that say they are calibrated
+    calibration : some of the parameters that are marked as calibrated
     shown       : {variable: display unit}
     flanges     : {terminal: its variables}
     domain      : domain or domains of its terminals
     steps       : number of steps of the default experiment; None if they are no whole number to the last bit
     linear      : an output is linear in an input, with a factor that FMI may call constant or tunable
-    others      : parameters with which such a constant factor stays
+    others      : parameters that leave such a constant factor unchanged
     """
 
     inputs: Mapping[str, str]
@@ -71,13 +71,13 @@ class Numbers:
 
     outputs : (spring, inputs) -> outputs, by the spring's own function
     ranges  : inputs of random states, all inside the tables
-    place   : makes inputs of random numbers in `ranges`, where not each range stands for itself
+    place   : function that makes inputs from random numbers in `ranges`, if the inputs depend on each other
     span    : inputs over the range of the tables, for the benchmark
-    state   : one state with nothing zero
-    sizes   : sizes of inputs, for differences, where `state` does not give them
+    state   : inputs of a state in which no output is zero
+    sizes   : {input: typical size} for difference quotients, if `state` does not give it
     good    : inputs of an ordinary state; the other inputs are zero
-    rest    : inputs that are not zero where nothing moves
-    jumps   : outputs that hold the third derivative of a table, which jumps at its nodes
+    rest    : inputs that are not zero at rest
+    jumps   : outputs that depend on the third derivative of a table, which jumps at its nodes
     kinks   : outputs that have kinks or jumps themselves, as friction does
     """
 
@@ -97,13 +97,13 @@ class Numbers:
 class Tuning:
     """Parameters that act in an FMU, and how far the tests change them.
 
-    base           : parameters with which every other one has its effect
-    also           : further ones, with which outputs depend on inputs that they do not depend on with `base`
-    moved          : {parameter: value} where 0.1 % more would not do
-    counted        : {parameter: (least, most)} of whole numbers at random
+    base           : parameter values at which every other parameter has an effect
+    also           : further values, at which outputs depend on more inputs than with `base`
+    moved          : {parameter: changed value}, if a change by 0.1 % is not possible
+    counted        : {parameter: (smallest, largest value)} of random whole numbers
     without_effect : parameters that no output shows
     tuned          : other parameters, each of which changes an output
-    baked          : sets of changes, each for a parameter file of its own
+    baked          : sets of changes of compiled parameters, each for a parameter file of its own
     """
 
     base: Mapping[str, Any] = field(default_factory=dict)
@@ -121,7 +121,7 @@ class Refusals:
 
     beyond    : ends of tables
     refused   : parameters outside their intervals
-    unfit     : parameters that do not fit together, and words of the refusal
+    unfit     : parameters that contradict each other, and words of the refusal
     forbidden : further settings that are refused
     absurd    : values inside their intervals that are refused by name or give numbers
     """
@@ -149,8 +149,8 @@ class Joint:
     """Properties of a joint that the shared tests need.
 
     cases   : test cases of its FMUs
-    varied  : a parameter of its surface that may change a little
-    scaled  : another one that may be scaled a little
+    varied  : a parameter of its surface that may be changed by a small amount
+    scaled  : another parameter that may be multiplied by a factor near 1
     studies : studies of its uncertainty
     unloaded : outputs that are not zero without load
     """

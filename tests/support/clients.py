@@ -352,7 +352,7 @@ _results: list[Path] = []
 
 
 def share_results(folder: Path) -> None:
-    """Keep what the probes find in a folder, which all processes of a run of pytest share."""
+    """Store the results of the probes in a folder, which all processes of a run of pytest share."""
     _results[:] = [folder]
 
 

@@ -96,8 +96,8 @@ def check_slopes(
     """Assert that the derivatives of all outputs with respect to an input are those of the package, for a
     virgin start.
 
-    Central differences of fourth order. A kink or jump of the output between their points makes those of
-    second order differ, by at least a quarter of its effect on the one of fourth.
+    The references are central differences of fourth order. A kink or jump between their points is detected by
+    the difference to those of second order, which is at least a quarter of its effect on the fourth order.
     """
     expected, size = package(name, changes).after(), abs((STATE[name] | CASES[name].numbers.sizes)[moved])
     h = 1e-3 * size

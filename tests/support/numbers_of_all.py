@@ -2,7 +2,7 @@
 
 python tests/support/numbers_of_all.py FOLDER [FILE ...]
 
-The Modelica library is written into the folder; the files come beside those that are shipped.
+The Modelica library is written into the folder. FILE: parameter files in addition to the shipped ones.
 """
 
 import json

@@ -1,7 +1,8 @@
 """Equations of a Modelica component as pymoca reads them, evaluated at the solution of another tool.
 
-pymoca simulates nothing that calls functions with matrices. Its parser is its own, though, and so is the
-meaning given to the text here: where the equations hold along rumoca's solution, that solves what is written.
+pymoca cannot simulate models that call functions with matrices, but its parser is independent of rumoca, and
+so is the evaluation in this module. If the equations hold along rumoca's solution, rumoca solves the written
+equations.
 """
 
 import operator

@@ -43,7 +43,7 @@ class Instance:
     """Instance of a module in wasmtime, with the methods of `conftest.Fmu`."""
 
     def __init__(self, module: PageModule, binary: bytes, file: ParameterFile | None = None) -> None:
-        """file : whose numbers that no tool may set stand in the data, instead of the module's own"""
+        """file : parameter file whose hidden numbers are in the data; None: those of the module"""
         import wasmtime
 
         self.store = wasmtime.Store()

@@ -16,8 +16,8 @@ class DriveJoint(Joint):
     """Harmonic drive of the public interface.
 
     `wind_up`, `torque` and `stiffness` describe the midline, without hysteresis and with the wave generator
-    locked. Above max_torque the midline continues with its last tangent: they warn, and `messages` of
-    `evaluate` and `follow` have the warning.
+    locked. Above max_torque the midline continues with its last tangent. The three methods then warn; results
+    of `evaluate` and `follow` have the warning in `messages`.
 
     >>> import jointfmu
     >>> drive = jointfmu.drive("CSG-25-100")

@@ -210,7 +210,7 @@ class Joint(TableDisplay):
 
     @plots.apply_style()
     def plot(self, fmu: str | None = None) -> "Figure":
-        """Draw the curves over the load, and hysteresis loops if the joint has any: a matplotlib figure."""
+        """Draw the outputs over the load, and hysteresis loops if there are any; returns a figure."""
         with require_package("draw"):
             from ..pages.report.figure import draw_panels
             from ..pages.report.joint import loop_figure, ramp_figure

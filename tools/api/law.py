@@ -55,8 +55,10 @@ class Law(TableDisplay):
         return Table(f"law {self.name}", ("name", "value", "unit", "meaning"), rows)
 
     def at_pressure(self, pressure: ArrayLike) -> Frame:
-        """Evaluate the law at nominal pressures (n) [Pa]: F, K_N, K_T, A_r for the nominal area A_0.
+        """Evaluate the law at nominal pressures (n) [Pa].
 
+        Columns of the result, for the nominal area A_0: load F [N], normal and tangential stiffness K_N and
+        K_T [N/m], real contact area A_r [m2].
         The `messages` of the result warn if the stiffness is implausible, or if a pressure is outside the
         range of the law. Arrays of parameters are not judged.
 
@@ -88,7 +90,7 @@ class Law(TableDisplay):
         return column
 
     def _build_frame(self, state: Mapping[str, Any], messages: tuple[str, ...]) -> Frame:
-        """Columns of the contact quantities, with warnings."""
+        """Make the result columns of the contact quantities in `state`, with warnings as messages."""
         names = [
             name for name in (*LAW_COLUMNS, *(n for n in state if n not in LAW_COLUMNS)) if name in state
         ]
@@ -101,7 +103,7 @@ class Law(TableDisplay):
 
     @plots.apply_style()
     def plot(self, pressure: ArrayLike | None = None) -> "Figure":
-        """Draw normal and tangential stiffness per area over the pressure [Pa]: a matplotlib figure."""
+        """Draw normal and tangential stiffness per area over the pressure [Pa]; returns a figure."""
         p = (
             np.geomspace(1e5, 1e8, 60)
             if pressure is None

@@ -249,7 +249,7 @@ class Fit(TableDisplay):
 def _procedure_paths(
     procedure: str, takes_several_files: bool, file: str | Path | Sequence[str | Path]
 ) -> Path | list[Path]:
-    """Convert the argument `file` of `fit` to what a procedure takes: one path, or a list of paths."""
+    """Convert the argument `file` of `fit` to what the fit function takes: one path, or a list of paths."""
     if isinstance(file, str | Path):
         return [Path(file)] if takes_several_files else Path(file)
     if not takes_several_files:
@@ -258,7 +258,7 @@ def _procedure_paths(
 
 
 def _to_procedure_value(option: Option, option_value: Any) -> object:
-    """Convert an option to the form that the function of a procedure takes; numbers are in SI units."""
+    """Convert an option of a fit to the form that its fit function takes; numbers are in SI units."""
     if option_value is None or not (option.is_number or option.default_unit):
         return _to_command_line_value(option, option_value)
     if option.default_unit and isinstance(option_value, str):

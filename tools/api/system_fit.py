@@ -49,7 +49,7 @@ class SystemFit(TableDisplay):
 
         force : replace a file that jointfmu did not write, or that was edited
 
-        Raises ValueError if the file may not or cannot be written, or if its name is no name of a system.
+        Raises ValueError if the file may not or cannot be written, or if its name is not valid for a system.
         """
         path = Path(path)
         check_output(path, PARAMETER_FILE, force)
@@ -77,7 +77,7 @@ def fit_system(
     file     : record (CSV); the heading names variables of the system and units
     free     : names of the parameters to fit, COMPONENT.PARAMETER, or one name; also states of bodies, whose
                start values are fitted then
-    hold_out : last share of the record [1] that is predicted instead of fitted
+    hold_out : fraction [1] of the record, at its end, that is predicted instead of fitted
     columns  : other headings in the file, `NAME=HEADING` or `NAME=HEADING [UNIT]`
 
     Raises ValueError for bad input, RuntimeError if the fit does not converge or the compiler fails.

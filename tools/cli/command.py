@@ -147,9 +147,9 @@ def format_sentence(text: str) -> str:
 
 
 def option_of_setting(args: argparse.Namespace, setting: str) -> str:
-    """Return the command-line option of a setting that an error names.
+    """Command-line option that sets a function argument named in an error message.
 
-    The command lists in `options` the settings whose option has another name.
+    `args.options` maps an argument name to its option, if the two names differ.
     """
     return format_option_flag(getattr(args, "options", {}).get(setting, setting))
 

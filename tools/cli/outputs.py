@@ -69,7 +69,7 @@ def check_input_overwrite(files: Iterable[Path], args: argparse.Namespace, outpu
 
 
 def _iterate_named_files(argument_value: object) -> Iterator[Path]:
-    """Yield the existing files that a value of the command line names, also as NAME=FILE."""
+    """Yield the existing files that an argument of the command line names, as FILE or NAME=FILE."""
     if isinstance(argument_value, list | tuple):
         for item in argument_value:
             yield from _iterate_named_files(item)

@@ -88,7 +88,7 @@ class Plausibility:
             yield str(self.stiffness_comparison)
 
     def with_warnings(self, extra_warnings: Sequence[str]) -> "Plausibility":
-        """Return a copy that has the extra warnings, followed by its own warnings."""
+        """Return a copy whose warnings are the extra ones, then those of this object."""
         return Plausibility(self.stiffness_comparison, (*extra_warnings, *self.warnings))
 
     def to_json(self) -> dict[str, Any]:

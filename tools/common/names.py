@@ -12,8 +12,9 @@ MIN_SIMILARITY = 0.6
 def find_similar_names(name: str, known_names: Iterable[str], count: int = 3) -> list[str]:
     """Find the known names that are most similar to a name, at most `count`; empty if none is similar.
 
-    They are sorted by their letters, then by the ratios of their numbers; case and separators do not matter.
-    Digits written together may be two numbers, as in csg32100: then the complete texts are compared.
+    Case and separators are ignored. The similarity of the letters decides first, then the ratios of the
+    numbers in both names. If a name has four digits or more in a row, these may be two numbers (csg32100 is
+    CSG-32-100): then letters and digits are compared as one text.
     """
     wanted = name.lower()
     joined = bool(re.search(r"\d{4}", wanted)) and not re.search(r"\d[\W_]\d", wanted)

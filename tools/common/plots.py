@@ -73,7 +73,8 @@ def open_figure(path: str | Path, figure_size: tuple[float, float] = (7.2, 4.2))
 def apply_style() -> Iterator[None]:
     """Apply the common style in a `with` block, or as a decorator of a function that draws.
 
-    Other settings stay as the block leaves them: the first figure of a notebook makes pyplot interactive.
+    At the end, only the settings of the style are restored. Other settings that change inside the block keep
+    their new value: the first figure of a notebook switches pyplot to interactive mode.
     Raises ValueError if matplotlib is missing.
     """
     settings = _load_settings()
@@ -96,7 +97,7 @@ def _load_settings() -> Any:
 
 
 def create_figure(figure_size: tuple[float, float]) -> "Figure":
-    """Create an empty figure of a size [inch] that `pyplot.show` and notebooks display, each of them once."""
+    """Create an empty figure of a size [inch]. `pyplot.show` and notebooks display it once."""
     from matplotlib import pyplot
 
     figure = pyplot.figure(figsize=figure_size, layout="constrained")

@@ -58,7 +58,7 @@ class PlanSymmetry:
 
     @classmethod
     def of(cls, assembly: Assembly) -> "PlanSymmetry":
-        """Find the symmetries of an assembly. The diagonal counts only beside both others."""
+        """Find the symmetries of an assembly. The diagonal is checked only if x and y are symmetries."""
         bolts = assembly.bolts.positions
 
         def maps_bolts(images: Array) -> bool:

@@ -46,7 +46,7 @@ class PathResult(NamedTuple):
 
 
 class JointEngine(Protocol):
-    """Joint that can be evaluated along paths of its inputs.
+    """Interface of a joint that can be evaluated along paths of its inputs.
 
     model : inputs and outputs of the joint
     """
@@ -66,19 +66,19 @@ class JointEngine(Protocol):
         """
 
 
-def open_joint(model: Model, file: ParameterFile) -> JointEngine:
+def open_joint(model: Model, parameter_file: ParameterFile) -> JointEngine:
     """Open a joint for evaluation: by its compiled library if there is one or a compiler, else by Python.
 
     Prints one line on standard error, once in a process, if it is evaluated in Python.
 
     Raises ValueError, one line, for parameters that the joint refuses.
     """
-    model = model.with_parameters(file.joint, file.values)
+    model = model.with_parameters(parameter_file.joint, parameter_file.values)
     try:
-        return CompiledJoint(model, file)
+        return CompiledJoint(model, parameter_file)
     except (ImportError, OSError, RuntimeError) as error:
         _announce_python_evaluation(" ".join(str(error).split()))
-        return PythonJoint(model, file)
+        return PythonJoint(model, parameter_file)
 
 
 class VariableJoint:
@@ -87,24 +87,28 @@ class VariableJoint:
     Parameters that the FMU exposes are set in the open joint. For other values of the remaining parameters
     the joint is opened again; the last MAX_OPEN_JOINTS stay open.
 
-    model : inputs and outputs of the joint
-    file  : parameters that `with_values` changes; None: those of the first call of `with_parameters`
+    model          : inputs and outputs of the joint
+    parameter_file : parameters that `with_values` changes; None: those of the first call of `with_parameters`
     """
 
     MAX_OPEN_JOINTS = 4
 
-    def __init__(self, model: Model, file: ParameterFile | None = None) -> None:
+    def __init__(self, model: Model, parameter_file: ParameterFile | None = None) -> None:
         self._model = model
         self._engines: dict[tuple[Any, ...], tuple[JointEngine, dict[str, Any]]] = {}
-        self._set_file(file)
+        self._set_file(parameter_file)
 
-    def _set_file(self, file: ParameterFile | None) -> None:
+    def _set_file(self, parameter_file: ParameterFile | None) -> None:
         """Set the parameter file whose values are changed, and close the open joints."""
-        self._file = file
+        self._file = parameter_file
         self._engines.clear()
-        if file is not None:
-            self._stated_values = file.values_by_name
-            self._exposed = self._model.with_parameters(file.joint, file.values).parameter_fields().keys()
+        if parameter_file is not None:
+            self._stated_values = parameter_file.values_by_name
+            self._exposed = (
+                self._model.with_parameters(parameter_file.joint, parameter_file.values)
+                .parameter_fields()
+                .keys()
+            )
 
     def with_parameters(self, parameters: Any) -> JointEngine:
         """Return an engine of the joint with a parameter set. Engines returned before become invalid.
@@ -135,7 +139,10 @@ class VariableJoint:
         return engine
 
     def _find_engine(self, hidden_values: Mapping[str, Any]) -> tuple[JointEngine, dict[str, Any]]:
-        """Open joint with given hidden parameters (not exposed by the FMU), and the values set in it."""
+        """Engine of the joint with these hidden parameters, and the exposed parameters that are set in it.
+
+        hidden_values : {name: value} of parameters that the FMU does not expose
+        """
         key = tuple(sorted(hidden_values.items()))
         found = self._engines.pop(key, None)
         if found is None:
@@ -245,14 +252,14 @@ class CompiledJoint(LoadedLibrary):
     fails or compiles for no such platform, OSError if the library cannot be loaded.
     """
 
-    def __init__(self, model: Model, file: ParameterFile) -> None:
+    def __init__(self, model: Model, parameter_file: ParameterFile) -> None:
         from jointfmu_fmu_src.native.library import make_joint_library
 
-        super().__init__(model, make_joint_library(model, file))
+        super().__init__(model, make_joint_library(model, parameter_file))
         inputs, outputs = [v.name for v in model.inputs], [v.name for v in model.outputs]
         self._input_references, self._output_references = map(self._list_references, (inputs, outputs))
         self._input_columns = {name: i for i, name in enumerate(inputs)}
-        self._start_row = np.array([[float(file.start_value(name)) for name in inputs]])
+        self._start_row = np.array([[float(parameter_file.start_value(name)) for name in inputs]])
 
     def _declare_functions(self) -> None:
         """Declare argument types of the C function that follows a path."""
@@ -288,7 +295,7 @@ class CompiledJoint(LoadedLibrary):
 def _close_library(library: Any, instance: Any, logger: Any, folder: str) -> None:
     """Free the instance of a library, unload the library and remove its folder.
 
-    logger : callback of the instance, an argument only to keep it alive until here
+    logger : log callback of the instance; it must exist until the library is unloaded
     """
     import _ctypes
 
@@ -304,11 +311,11 @@ def _close_library(library: Any, instance: Any, logger: Any, folder: str) -> Non
 class PythonJoint:
     """Joint that is evaluated by its Python law. See `JointEngine`."""
 
-    def __init__(self, model: Model, file: ParameterFile) -> None:
+    def __init__(self, model: Model, parameter_file: ParameterFile) -> None:
         self.model = model
-        self._parameter_class, self._values = type(file.values), dict(file.values_by_name)
-        self._start_values = {v.name: file.start_value(v.name) for v in model.inputs}
-        self._joint: Any = model.tabulate(file.values)
+        self._parameter_class, self._values = type(parameter_file.values), dict(parameter_file.values_by_name)
+        self._start_values = {v.name: parameter_file.start_value(v.name) for v in model.inputs}
+        self._joint: Any = model.tabulate(parameter_file.values)
 
     def set_parameters(self, values: Mapping[str, Any]) -> None:
         """Set parameters by structured name [SI], see `JointEngine.set_parameters`."""

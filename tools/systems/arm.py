@@ -74,7 +74,7 @@ class Arm:
     """Serial arm and its motion: all axes rotate from zero to their travel, by a quintic from rest to rest.
 
     axis_names    : names of the axes, starting at the ground
-    rotation_axes : rotation axis of each of them, a key of AXIS_VECTORS
+    rotation_axes : direction of each axis, a key of AXIS_VECTORS
     links         : link behind each axis
     start         : start time of the motion [s]
     duration      : duration of the motion [s]

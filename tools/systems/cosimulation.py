@@ -1,4 +1,4 @@
-"""Simulation of a system: of its FMUs (FMI 2.0) by a sequential or a parallel master; of an arm as one."""
+"""Simulation of a system: co-simulation of its FMUs (FMI 2.0), or an arm by the equations of its one FMU."""
 
 from contextlib import ExitStack
 from itertools import accumulate

@@ -40,7 +40,7 @@ class MasterKind(NamedTuple):
     """Kind of co-simulation master for which an archive is made.
 
     suffix           : suffix of the archive name
-    force_lag        : delay of the force of a joint on a body [communication steps]
+    force_lag        : number of communication steps by which the force of a joint on a body is delayed
     force_lag_reason : reason for this lag
     is_sequential    : whether the master is sequential (Gauss-Seidel), as OMSimulator; otherwise parallel
         (Jacobi)
@@ -209,7 +209,7 @@ def build_systems(
     return fmus + [path for system in chosen for path in write_archives(system, out)]
 
 
-def _check_same_parameters(fmu_path: Path, file: ParameterFile) -> None:
+def _check_same_parameters(fmu_path: Path, parameter_file: ParameterFile) -> None:
     """Raise InputRefusal if an FMU exists and was built from other parameters than those of the file."""
     if not fmu_path.exists():
         return
@@ -218,10 +218,13 @@ def _check_same_parameters(fmu_path: Path, file: ParameterFile) -> None:
         names = [name for name in archive.namelist() if name.startswith(folder) and name.endswith(".toml")]
         texts = [archives.read_member(archive, name).decode() for name in names]
     stated = [text for text in texts if "joint" in tomllib.loads(text)]
-    if stated and any(_list_numbers(text) != _list_numbers(format_parameter_file(file)) for text in stated):
+    if stated and any(
+        _list_numbers(text) != _list_numbers(format_parameter_file(parameter_file)) for text in stated
+    ):
         raise InputRefusal(
-            f"{fmu_path}: was built from other parameters, and the systems need it with {file.name!r}; state "
-            "another folder with --out, pack your parameters with --params, or force to replace it",
+            f"{fmu_path}: was built from other parameters, and the systems need it with "
+            f"{parameter_file.name!r}; state another folder with --out, pack your parameters with --params, "
+            "or force to replace it",
             "force",
         )
 

@@ -168,8 +168,8 @@ def _scale_partner(
 ) -> Component:
     """Partner (body or load) scaled from the rated values of one joint to those of another joint.
 
-    Loads scale with the rated load, inertias with the rated load over the motion of the flange. A load that
-    stays, `ramp_height`, is increased by the friction of the new joint.
+    Loads scale with the rated load, inertias with the rated load over the motion of the flange. The permanent
+    load `ramp_height` also changes by the difference of the friction of both joints.
     """
     load = rating_after.load / rating_before.load
     inertia = load * rating_before.motion / rating_after.motion
@@ -333,8 +333,8 @@ def _make_component(path: Path, name: str, section: Any) -> Component:
     return Component(name, model, base, file, own, values, units, sources)
 
 
-def _variable_fields(model: str, file: ParameterFile | None) -> dict[str, Any]:
+def _variable_fields(model: str, parameter_file: ParameterFile | None) -> dict[str, Any]:
     """{parameter: dataclass field} of the FMU variables of a model."""
-    if file is None:
+    if parameter_file is None:
         return dict(flatten_fields(PARTNERS[model].parameter_class))
-    return MODELS[model].with_parameters(file.joint, file.values).parameter_fields()
+    return MODELS[model].with_parameters(parameter_file.joint, parameter_file.values).parameter_fields()

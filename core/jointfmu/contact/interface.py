@@ -36,7 +36,7 @@ _INVERSION_BLOCK_SIZE = 16384
 
 
 class InterfaceLaw(Protocol):
-    """Interface law: load, stiffness and real area of two rough surfaces by the largest contact spot."""
+    """Interface law: load, stiffness and real area of two rough surfaces over the largest spot's size."""
 
     @property
     def A_0(self) -> float:
@@ -141,9 +141,9 @@ def solve_largest_spot(law: InterfaceLaw, pressure: ArrayLike) -> Array:
 
 
 def get_checked_spot_distribution(law: InterfaceLaw) -> SpotDistribution:
-    """Contact spots of a law: size distribution, load, stiffness and area; its loads are checked first.
+    """Contact spots of a law, after a check that their reference area and loads are representable as floats.
 
-    Raises ValueError if its reference area or its load over- or underflows (D near 1).
+    Raises ValueError if the reference area or a load over- or underflows (D near 1).
     """
     return _check_distribution_loads(law)[0]
 
@@ -151,7 +151,7 @@ def get_checked_spot_distribution(law: InterfaceLaw) -> SpotDistribution:
 def _check_distribution_loads(law: InterfaceLaw) -> tuple[SpotDistribution, list[Number]]:
     """Contact spots of a law, and their total loads [N] at the log-areas MIN_LOG_AREA, 0 and MAX_LOG_AREA.
 
-    The loads show whether they are representable as floats in the whole range.
+    Raises ValueError if a load or the reference area is not representable as a float.
     """
     ends = (MIN_LOG_AREA, 0.0, MAX_LOG_AREA)
     with np.errstate(all="ignore"):
@@ -192,8 +192,8 @@ def _solve_log_area(spot_distribution: SpotDistribution, load: Array) -> Array:
 def evaluate_at_log_area(law: InterfaceLaw, largest_log_area: Number) -> dict[str, Number]:
     """Contact quantities of the nominal area A_0 at the log-area u [1] of the largest spot.
 
-    Contains `largest_spot` [m2], `pressure` [Pa] and the quantities of the law. At zero load (u minus
-    infinity) sums are zero and ratios have their limit.
+    The result contains `largest_spot` [m2], `pressure` [Pa] and the quantities of the law. At zero load (u
+    minus infinity) sums are zero and ratios have their limit.
     """
     empty = np.isneginf(largest_log_area)
     state = law.contact_quantities(np.where(empty, MIN_LOG_AREA, largest_log_area))
@@ -209,7 +209,7 @@ def evaluate_at_log_area(law: InterfaceLaw, largest_log_area: Number) -> dict[st
 def evaluate_at_pressure(law: InterfaceLaw, pressure: ArrayLike) -> dict[str, Number]:
     """Contact quantities of the nominal area A_0 at nominal pressures (...) [Pa].
 
-    Contains the same quantities as the result of `evaluate_at_log_area`: load, stiffness, area, ...
+    The result has the same quantities as that of `evaluate_at_log_area`: load, stiffness, area, ...
     """
     return evaluate_at_log_area(law, solve_largest_spot(law, pressure))
 

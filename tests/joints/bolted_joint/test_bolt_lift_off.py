@@ -126,7 +126,7 @@ def test_a_field_may_list_its_bolts():
 
 
 def test_one_row_of_bolts_takes_no_share_of_a_moment():
-    """No share, even if the mean of the positions differs from a position by round-off."""
+    """The bolt force per moment is zero, even if the mean position differs from a bolt by round-off."""
     row = np.column_stack([[-0.05, 0.0, 0.05], [0.1, 0.1, 0.1]])
     np.testing.assert_array_equal(bolt_law.bolt_force_per_moment(row), 0.0)
 
@@ -181,7 +181,7 @@ def test_a_lifted_bolt_has_no_stiffness():
 
 
 def test_stiffness_is_that_of_the_forces_on_both_sides_of_lift_off(file):
-    """All, some or no bolts are in tension."""
+    """The stiffness outputs agree with differences of the forces if all, some or no bolts are in tension."""
     spring, seen = BoltedJointSpring.for_joint(file.values), set()
 
     for part in (0.5, 0.8, 1.6, 2.5):
@@ -196,10 +196,10 @@ def test_stiffness_is_that_of_the_forces_on_both_sides_of_lift_off(file):
 
 
 def test_a_closed_elastic_cycle_through_lift_off_has_no_work(file):
-    """A cycle of normal displacement and rotations, back on another path: the forces have a potential.
+    """A cycle of normal displacement and rotations, back on another path, has no work: a potential.
 
-    By Simpson's rule, whose error is that of the corners. A bolt that lost its force at once would miss
-    14.2 kN over some of 47 um.
+    The work is computed by Simpson's rule, whose error comes from the corners of the force. A bolt that lost
+    its force at once would cause an error of 14.2 kN times a part of 47 um.
     """
     spring, depth, lifted = BoltedJointSpring.for_joint(file.values), 1.3 * LIFT_OFF, False
     angle = np.linspace(0.0, 2.0 * np.pi, 401)

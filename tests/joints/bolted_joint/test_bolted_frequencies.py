@@ -56,7 +56,7 @@ def all_nodes(preload: float, moment: float) -> Array:
 
 
 def force_of(fmu: Fmu) -> Force:
-    """Function: force and moment (6) of an FMU at a displacement (6), which is accepted if `done`."""
+    """Function that returns force and moment (6) of an FMU at a displacement (6); `done` accepts the step."""
     inputs = [fmu.variables[name].valueReference for name in AXES]
     outputs = [fmu.variables[name].valueReference for name in FORCES]
 
@@ -249,10 +249,10 @@ def test_flavours_agree(native: Path, fmus: Path) -> None:
 def swings(first: float, least: float) -> Array:
     """Distances between successive turning points of a block that is released at the displacement `first`.
 
-    By the theorem of Jaeger and Ciavarella and Masing's rule over all nodes, to a least part of the friction:
-    from a turn with the force q to the next one the force falls twice as far as it rose on half the way at
-    first, B, and does no work. So their distance 2 s follows from q s = 2 I(s), I the integral of B, and the
-    force there is q - 2 B(s).
+    They follow from the theorem of Jaeger and Ciavarella and from Masing's rule over all nodes. From a
+    turning point with the force q to the next one at the distance 2 s, the force falls by 2 B(s), B the first
+    loading. Between two turning points the work is zero: q s = 2 I(s), I the integral of B. The force at the
+    next turning point is q - 2 B(s). The series ends at a fraction `least` of the friction limit.
     """
     nodes = BoltedJointSpring.for_interface_nodes(JOINT)
     approach, law = nodes.preloaded_approach(PRELOAD, 0.0), nodes.friction_law.foundation()

@@ -169,9 +169,9 @@ def test_masing(spring):
 
 
 def test_the_loss_factor_falls_with_the_amplitude_down_to_none(spring):
-    """eta_loop = 2/(3 pi) kappa u sum(k')/(mu sum(k)) of the patches, without a peak at zero amplitude.
+    """For small amplitudes u, eta_loop = 2/(3 pi) kappa u sum(k')/(mu sum(k)) of the patches, down to zero.
 
-    Of second order is some half of the amplitude over that of gross slip, 1e-6 m.
+    The relative error, of second order, is about half the amplitude over the 1 um of gross slip.
     """
     approach = spring.curve.inverse(preload_pressure(JOINT, spring.patches, 9e3, 0.0))
     _, k, bend = (spring.patches.area_share @ each for each in spring.curve.derivatives(approach, 2))
@@ -218,7 +218,7 @@ def test_separated_joint_forgets(spring):
 
 @pytest.mark.slow
 def test_no_closed_path_creates_energy(spring):
-    """Work on the joint = heat + energy of the sliders >= heat, at constant preload and moment."""
+    """At constant preload and moment, the work on the joint is the heat plus the energy of the sliders."""
     rng = np.random.default_rng(40)
     for preload, moment in LOADS:
         path = polygon(rng, corners=3, steps=30)
@@ -244,8 +244,8 @@ def stored(spring, memory):
 def missing(spring, steps, taken):
     """Error of the energy balance over some steps, relative to the work and the stored energy.
 
-    All six motions, preload and moment swing; the work of a step is the integral of the force that trials
-    from the accepted state show along the straight path, by Gauss's rule of order 8 in 6 parts.
+    All six motions, preload and moment oscillate. The work of a step is the integral of the force along the
+    straight path, from trial evaluations of the accepted state (Gauss quadrature of order 8 in 6 parts).
     """
     x, w = np.polynomial.legendre.leggauss(4)
     parts = (np.arange(6)[:, None] + 0.5 + 0.5 * x).ravel() / 6.0
@@ -364,7 +364,8 @@ def test_the_stiffness_matrix_is_symmetric_and_holds_the_outputs(preload, moment
 )
 @pytest.mark.parametrize("seed", range(4))
 def test_stiffness_after_slip_is_that_of_the_softer_direction(spring, seed, motion, rtol):
-    """Going on, more sliders slip than going back. Around its centre a patch turns alike both ways."""
+    """The stiffness output after slip is the smaller of both directions: more sliders slip if the motion
+    continues than if it reverses."""
     path, memory = polygon(np.random.default_rng(seed), 2, 3)[:-2] * np.array(motion), None
     for place in path:
         out, memory = MODEL.advance(spring, at(place), spring.initial_history() if memory is None else memory)
@@ -439,8 +440,8 @@ def test_a_turned_frame_gives_turned_forces(degrees, memory):
 
 @pytest.mark.parametrize("part", [0.5, 0.9])
 def test_a_normal_force_that_swings_takes_shear_once(spring, part):
-    """Decrease by 30 % and return, at constant displacement. Springs that lifted off lose their force the
-    first time, within 0.1 % of the theorem (Popov and Hess 2015), and none in the next forty cycles."""
+    """At constant displacement, the normal force falls by 30 % and returns: shear force is lost in the first
+    cycle only, within 0.1 % of the theorem (Popov and Hess 2015), and not in the next forty cycles."""
     force = 9e3 * JOINT.n_bolts
 
     def normal(z):

@@ -97,7 +97,7 @@ def test_uniform_pressure_is_the_law(even):
 
 @each_load
 def test_stiffness_is_the_sum_of_the_nodes_own_laws(spring, preload, moment):
-    """The law at the pressure of each node for the whole area A_0, weighted by the share of the node."""
+    """The stiffness is the sum of the law at each node's pressure, weighted by the area share of the node."""
     p = preload_pressure(JOINT, spring.points, preload, moment)
     assert (
         np.min(p) > spring.curve.load[np.searchsorted(spring.curve.displacement, 0.0)]
@@ -316,7 +316,7 @@ def test_loss_factor_while_closing(even):
 
 @each_load
 def test_rotational_stiffness_about_the_centroid(spring, preload, moment):
-    """Sums written out: A k y^2, A k x^2, and rho A k (x^2 + y^2)."""
+    """Rotational stiffnesses are sums of A k y^2, A k x^2 and rho A k (x^2 + y^2) about the centroid."""
     out = spring.evaluate(preload, moment, STILL, STILL)
     law = evaluate_at_pressure(JOINT, preload_pressure(JOINT, spring.points, preload, moment))
     x, y = spring.points.position.T

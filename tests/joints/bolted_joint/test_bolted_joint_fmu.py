@@ -259,7 +259,8 @@ def test_slopes_of_accepted_states_are_the_mean_of_both_directions(host: Host, v
 def test_an_accepted_state_tells_the_tangent_of_a_further_motion(fmu: Host, host: Host, version: str) -> None:
     """For any previous steps, K_yy, K_rz and derivatives agree with differences of the same instance.
 
-    Along x sliders at their limits slip on or stick: K_xx is the slope of going on, the derivative the mean.
+    Along x, sliders are at their limits. K_xx is the slope if the motion continues (they slip on); the
+    derivative is the mean of this slope and of that for a reversal (they stick).
     """
     end, found = 0.6e-6, []
     for steps in (1, 7, 200):

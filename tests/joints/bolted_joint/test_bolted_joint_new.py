@@ -69,7 +69,7 @@ def positions(count, **given):
     ],
 )
 def test_preloads_of_table_a1(name, printed):
-    """VDI 2230, part 1, Table A1 (mu_G = 0.12), classes 8.8, 10.9 and 12.9 in kN."""
+    """Preloads agree with VDI 2230, part 1, Table A1 (mu_G = 0.12), classes 8.8, 10.9 and 12.9 in kN."""
     found = [
         vdi2230.assembly_preload(read_threads()[name], strength["yield"][0]) / 1e3
         for strength in read_property_classes().values()
@@ -83,8 +83,11 @@ def test_stress_areas_of_iso_898(name, printed):
 
 
 def test_members_of_a_textbook():
-    """Shigley's Mechanical Engineering Design, example 8-2: two 1/2 in plates of steel and a 0.095 in washer,
-    30 Mpsi, frusta of 30 degrees from 1.5 d around a hole of d = 1/2 in: 15.97 Mlbf/in."""
+    """The member stiffness is that of Shigley's Mechanical Engineering Design, example 8-2: 15.97 Mlbf/in.
+
+    Two 1/2 in plates of steel and a 0.095 in washer, 30 Mpsi, frusta of 30 degrees from 1.5 d around a hole
+    of d = 1/2 in.
+    """
     inch, lbf_in = 0.0254, 4.4482216 / 0.0254
     layers = [vdi2230.ClampedPart(t * inch, 30e6 * 6894.757) for t in (0.095, 0.5, 0.5)]
     d = 0.5 * inch
@@ -115,8 +118,10 @@ def test_members_are_the_integral_over_the_cone(outer, tapped):
 
 
 def test_a_bolt_by_hand():
-    """M12 with 40 mm grip, 19.35 mm shank: lengths 6 + 19.35 mm with nominal area, 20.65 + 6 mm with d_3, 4.8
-    mm nut."""
+    """The bolt compliance equals a calculation by hand: M12 with 40 mm grip and 19.35 mm shank.
+
+    Lengths: 6 + 19.35 mm with the nominal area, 20.65 + 6 mm with d_3, 4.8 mm in the nut.
+    """
     M12 = read_threads()["M12"]
     shank = vdi2230.shank_length(M12, 0.04, "hexagon", is_tapped=False)
     assert shank == pytest.approx(40e-3 + 9.6e-3 + 3.5e-3 - 30e-3)
@@ -141,7 +146,7 @@ def test_a_bolt_by_hand():
     ],
 )
 def test_embedding_of_table_5(Rz, tapped, printed):
-    """VDI 2230, part 1, Table 5, axial load: thread, head and nut, and one interface, in um."""
+    """Embedding [um] agrees with VDI 2230, part 1, Table 5 (axial load): thread, head, nut, one interface."""
     assert vdi2230.embedding_depth(Rz * 1e-6, 1, tapped) * 1e6 == pytest.approx(printed)
 
 
@@ -181,7 +186,7 @@ def preload_of(torque, thread, mu_G, mu_K):
     ],
 )
 def test_torques_of_tables_a1_and_a3(name, pitch, mu, preload, torque):
-    """VDI 2230, part 1, Tables A1 and A3, class 8.8: preload in kN and torque in N.m at mu_G = mu_K."""
+    """Preload [kN] and torque [N.m] agree with VDI 2230, part 1, Tables A1 and A3, class 8.8, mu_G = mu_K."""
     thread = find_thread(name, pitch)
     assert vdi2230.assembly_preload(thread, 640e6, mu) / 1e3 == pytest.approx(preload, rel=5e-3)
     assert preload_of(torque, thread, mu, mu) / 1e3 == pytest.approx(preload, rel=0.015)
@@ -334,7 +339,7 @@ ANALYSED += ["--material", "titanium", "steel", "--Ra", "0.8"]
 
 
 def test_load_factor_of_a_published_analysis(capsys):
-    """Analysis after ECSS-E-HB-32-23A with a washer 1.5 mm thick under the head: load factor 0.181."""
+    """The load factor is that of a published analysis by ECSS-E-HB-32-23A: 0.181, with a 1.5 mm washer."""
     assert facts_of(capsys, *ANALYSED)["load_factor"] > 1.05 * 0.181
     found = facts_of(capsys, *ANALYSED, "--washers", "16x1.5")
     assert found["load_factor"] == pytest.approx(0.181, rel=0.01)

@@ -369,8 +369,8 @@ def test_washers_widen_the_bearing_face_of_the_finite_elements(capsys):
 @needs("gmsh")
 @pytest.mark.slow
 def test_the_load_at_the_faces_passes_the_bolts_by(capsys, fine_elements):
-    """Load factor n of VDI 2230: the nearer to the interface a load acts, the smaller the share of
-    the bolts."""
+    """A load at the faces loads the bolts less than half as much as one at the heads, as it is nearer to the
+    interface (load introduction factor n of VDI 2230)."""
     heads, _ = made(capsys, *M16, *LOAD, "--attached", "heads")
     faces, found = made(capsys, *M16, *LOAD)
     assert faces["joint_load_factor"] < 0.5 * heads["joint_load_factor"]

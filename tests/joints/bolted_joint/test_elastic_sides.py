@@ -276,8 +276,8 @@ def test_sides_that_do_not_give_way_are_rigid(made):
     """Modes that are 1e12 times as stiff give the interface on the same patches, with the bolts at their
     positions.
 
-    Patches have the normal force of the points, not that at their own places: 1.3e-3 of a force and 0.7 N.m
-    were seen, where the friction is 6 kN some 30 mm from the centre.
+    Patches take the normal force of the points, not the pressure at their own positions. Measured: 1.3e-3 of
+    a force, and 0.7 N.m (the friction is 6 kN at 30 mm from the centre).
     """
     values = made(*FOUR, preload=15e3).file.values
     stiff = replace(values.bodies, stiffness=tuple(1e12 * k for k in values.bodies.stiffness))

@@ -59,7 +59,7 @@ def test_the_gain_of_preload_is_that_of_vdi_2230_by_hand():
 
 
 def test_the_gain_of_preload_is_that_of_two_springs_with_a_mismatch():
-    """Bolt and plates, each with its free length, in equilibrium without an external force."""
+    """The change of preload is that of two springs, bolt and plates, with different free lengths."""
     joint = thermal_file(**{"side1.alpha": 5e-6, "side1.clamped_length": 0.03}).values
     free_bolt, free_plates = 12e-6 * 0.045 * 50.0, (5e-6 * 0.03 + 23e-6 * 0.015) * 50.0
     k_b, k_p = joint.bolt_stiffness, joint.plate_stiffness

@@ -49,7 +49,7 @@ def closing_end(spring):
 
 @each
 def test_approach_is_the_integral_of_df_over_K(spring):
-    """Against adaptive quadrature of the law's stiffness from the end of the closing on."""
+    """The approach agrees with adaptive quadrature of df/K_N of the law, from the end of the closing on."""
     A_0 = spring.joint.A_0
     first, s = closing_end(spring)
     assert float(spring.evaluate(first)["s_rel"]) == pytest.approx(s, rel=1e-12)  # round-off of the inverse
@@ -76,7 +76,7 @@ def test_approach_is_the_integral_of_df_over_K(spring):
 
 @each
 def test_stiffness_is_the_slope_of_the_force(spring):
-    """1/K_N = ds/df by differences of the output, from first contact to beyond the table."""
+    """1/K_N agrees with differences ds/df of the outputs, from first contact to beyond the table."""
     f = np.geomspace(1e-6, 3.0, 60) * spring.max_force
     h = 1e-3 * f
     slope = STENCIL @ spring.evaluate(f + h * FIVE[:, None])["s_rel"] / h
@@ -120,7 +120,7 @@ def test_vanishing_forces(f):
 
 @each
 def test_real_area_and_its_elastic_part(spring):
-    """Sums of the law, and closed form: A_r = lambda m/(1 - m) a_L, elastic above a_nec."""
+    """A_r and its elastic part are the sums of the law, and the closed form A_r = lambda m/(1 - m) a_L."""
     f = np.geomspace(1e-3, 0.9, 12) * spring.max_force
     out = spring.evaluate(f)
     law = evaluate_at_pressure(spring.joint, f / spring.joint.A_0)
@@ -135,7 +135,7 @@ def test_real_area_and_its_elastic_part(spring):
 
 
 def test_zeta_is_the_exponent():
-    """m = sqrt(1 - e^2) (D1 + D2)/4 for Table 1 of Yu 2022, up to the end of the table."""
+    """The exponent m of the size distribution is sqrt(1 - e^2) (D1 + D2)/4 for Table 1 of Yu 2022."""
     exponent = np.sqrt(1 - 0.2**2) * 2 * 1.46 / 4
     assert CONTACT.spot_distribution().size_exponent == pytest.approx(exponent, rel=1e-15)
     assert SPRINGS["default"].max_force == pytest.approx(2.8 * 235e6 * 1e-4, rel=1e-12)  # H A_0

@@ -54,7 +54,7 @@ def test_one_pair_more_around_whole_phases(ratio, phase, count):
 
 
 def test_time_with_one_pair_more():
-    """The fractional part of the contact ratio is the part of the cycle with more than half a pair extra."""
+    """The share of the mesh cycle with one pair more (by at least half) is the contact ratio's fraction."""
     count, _ = pairs_in_contact(1.69, 0.3, 0.0, CYCLE)
     assert np.mean(count > 1.5) == pytest.approx(0.69, abs=1.0 / CYCLE.size)
     full = np.mean(count == 2.0)

@@ -47,7 +47,10 @@ def test_the_pair_of_the_shipped_file_comes_out(capsys, tmp_path):
 
 
 def test_the_patch_is_hertz(capsys):
-    """R = 1/(1/R1 + 1/R2) with R_i = r_i sin(alpha); b = sqrt(4 F R/(pi L E*)), p = 2 F/(pi b L)."""
+    """Half width and pressure of the flank contact are Hertz's: b = sqrt(4 F R/(pi L E*)), p = 2 F/(pi b L).
+
+    R = 1/(1/R1 + 1/R2) with R_i = r_i sin(alpha).
+    """
     found = made(capsys, *DRAWING, *FACES)
     R1, R2 = (0.5 * 4e-3 * z * math.sin(math.radians(20.0)) for z in (29, 45))
     F = 150.0 / (0.5 * 4e-3 * 29 * math.cos(math.radians(20.0)))
@@ -71,7 +74,10 @@ LOADED = 1e4
 
 @pytest.mark.parametrize(("helix", "c_gamma"), [(20.0, 18.8), (24.0, 17.9)])
 def test_the_stiffness_of_helical_wheels_is_that_of_their_lines_of_contact(capsys, helix, c_gamma):
-    """c_gamma of ISO 6336-1, Eq. for mean mesh stiffness, by hand; 10 %: 0.75 eps + 0.25 instead of eps."""
+    """c_gamma is that of ISO 6336-1, computed by hand; the mean stiffness K of the mesh is within 10 % of it.
+
+    The standard has 0.75 eps + 0.25 in place of the mean number of pairs eps.
+    """
     mesh = wheels(helix, 0.04)
     tooth = mesh.tooth_stiffness(STEEL, LOADED)
     assert mesh.mesh_stiffness(tooth) / 0.04e9 == pytest.approx(c_gamma, abs=0.05)
@@ -111,7 +117,10 @@ def test_a_helix_spreads_the_contact_and_softens_the_tooth():
 
 
 def test_the_tooth_knows_its_rack_and_its_load():
-    """C_B = 1 - 0.02 (20 - alpha); (F_t/b / 100 N/mm)^0.25 below 100 N/mm, 1 above."""
+    """The tooth stiffness has the factors of basic rack, C_B = 1 - 0.02 (20 - alpha), and of low line loads.
+
+    Below 100 N/mm the second one is (F_t/b / 100 N/mm)^0.25, above it is 1.
+    """
     spur = wheels()
     steep = InvoluteGearPair(4e-3, (29.0, 45.0), 0.01, math.radians(25.0), 0.0)
     loaded = spur.tooth_stiffness(STEEL, LOADED)
@@ -150,7 +159,7 @@ def test_the_mesh_prints_its_stiffness_in_python():
 
 
 def test_the_tooth_stiffness_is_within_the_spread_of_published_formulas(capsys):
-    """Spur gears of an open rotor-dynamics code: mean mesh stiffness 4.10e8 N/m."""
+    """c_gamma is within 20 % of spur gears in an open rotor-dynamics code: mean mesh stiffness 4.10e8 N/m."""
     words = ["--module", "2", "--teeth", "62", "62", "--width", "20", "--torque", "200", *FACES]
     assert made(capsys, *words)["facts"]["c_gamma"]["value"] == pytest.approx(4.10e8, rel=0.2)
 
@@ -173,7 +182,8 @@ def test_wheels_with_profile_shift_mesh_without_backlash(helix, shifts):
 
 
 def test_the_path_of_contact_lies_between_the_tip_circles():
-    """Points on the common tangent of the base circles, which are inside both tip circles."""
+    """The contact ratio follows from the points of the common tangent of the base circles inside both tip
+    circles."""
     mesh = replace(wheels(), profile_shifts=(0.5, 0.3), stated_tip_radii=(0.0635, 0.0948))
     tangent = mesh.centre_distance * math.sin(mesh.working_angle)
     along = (np.arange(1_000_000) + 0.5) / 1_000_000 * tangent

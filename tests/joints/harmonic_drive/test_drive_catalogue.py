@@ -43,7 +43,7 @@ def test_every_row_of_stiffness_has_its_drives():
 
 
 def test_every_row_of_torque_is_told_as_printed():
-    """Size 11 has no row of stiffness."""
+    """The printed torques of every drive are found, except for size 11, which has no stiffness row."""
     for row in rows("torque"):
         name = f"{row['series']}-{row['size']}-{row['ratio']}"
         if row["size"] != "11":
@@ -91,7 +91,7 @@ def test_the_nearest_names_are_told(name, near):
     ],
 )
 def test_another_ratio_takes_the_row_of_that_ratio(name, ratio, found):
-    """K1 of CSG-32 is 54 000 N.m/rad at ratio 50, 67 000 at ratio 100."""
+    """Another ratio selects its own row: K1 of CSG-32 is 54 000 N.m/rad at ratio 50, 67 000 at ratio 100."""
     drive, row = jointfmu.drive(name, ratio=ratio), catalogue.find_drive(found)
     assert drive.name == row.name == found
     assert abs(drive.values["ratio"]) == abs(ratio)

@@ -230,7 +230,10 @@ def rows_of(name, **options):
 
 
 def test_the_page_has_what_is_published_of_the_drive(tmp_path):
-    """The source of a parameter tells which number set it; estimates of friction are left out."""
+    """The page compares the drive with its published values, without estimated friction.
+
+    Values that set a parameter are told from predictions by the sources of the parameters.
+    """
     rows = rows_of("RT1-H-17-100")
     roles = {name: row.role for name, row in rows.items()}
     turned = ("starting_torque", "running_torque", "efficiency", "back_driving_torque")
@@ -293,7 +296,10 @@ def test_the_law_is_the_stated_one():
 
 @pytest.mark.slow
 def test_every_drive_has_friction_and_says_from_where():
-    """The back-driving torque of CSF-17-100 would give a negative loss."""
+    """Every drive has positive friction parameters with a source.
+
+    The back-driving torque of CSF-17-100 would give a negative loss, which is set to zero.
+    """
     for item in catalogue.list_drives():
         drive = made(item.name)
         for name in ("friction_coulomb", "load_loss", "load_loss_back"):

@@ -97,7 +97,7 @@ def test_fmu_passes_through_the_catalogue(tmp_path):
 
 @pytest.mark.slow
 def test_a_row_beyond_the_law_is_said(capsys):
-    """K3 = 1.6 K2 with the rated torque far above T2: the stiffness of the law does not rise that fast."""
+    """The command names a row that the smooth law cannot follow: K3 = 1.6 K2, rated torque far above T2."""
     values = {"K1": 24000, "K2": 30000, "K3": 49000, "T1": 29, "T2": 108}
     given = options(**values, law="hu2023")
     assert cli.main(["fit", "catalogue", *given, "--rated-torque", "151.2"]) == 1
@@ -118,7 +118,8 @@ def test_the_lines_stay_where_no_smooth_law_keeps_them():
 
 @pytest.mark.slow
 def test_the_default_keeps_the_lines_and_tells_what_the_pair_makes_of_them(tmp_path, capsys):
-    """CSG-17-100: the smooth law is 14 % below K1 without torque, and some percent above K3."""
+    """The drive keeps the catalogue lines, and the output compares the smooth law with them: for CSG-17-100
+    it is 14 % below K1 at zero torque, and a few percent above K3."""
     out, picture = tmp_path / "out.toml", tmp_path / "fit.svg"
     given = options(K1="1.0", K2="1.4", K3="1.6", T1="3.9Nm", T2=12, out=out, plot=picture)
     given += ["--stiffness-unit", "1e4 Nm/rad", "--rated-torque", "31", "--json"]

@@ -219,7 +219,8 @@ def swung(
 def test_a_drive_starts_turns_round_and_stops_as_on_the_fmu(rumoca: Any, native: Path):
     """Motor with a hanging link, driven in one direction, then in the other, then free.
 
-    Heun's method on the FMU, extrapolated to a step of zero; what is left is of the layer and of corners.
+    The reference is Heun's method on the FMU, extrapolated to a step of zero. The remaining difference comes
+    from the regularisation layer of the component's sliders and from corners of the force.
     """
     values = {**DRY, "friction_viscous": 1e-5, "error_2": 2e-4, "hysteresis_loss": 2.9e-4}
     law = spring(**values)
@@ -433,7 +434,7 @@ def test_at_a_temperature_the_component_is_the_package(rumoca):
 def test_all_losses_go_out_at_the_heat_port(rumoca):
     """A heat capacity at the port receives the losses of hysteresis, dry and viscous friction, and damper.
 
-    It is what the work put in has more than springs and sliders store.
+    The heat is the input work minus the energy stored in springs and sliders.
     """
     ratio = -80.0
     values, stop = {**WARM, "hysteresis_loss": 2e-4, "load_loss_back": 0.3, "ratio": ratio}, 2.2

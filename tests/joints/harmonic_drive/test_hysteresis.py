@@ -195,7 +195,7 @@ def stored(law, memory):
 
 
 def test_exponent_is_that_of_the_pairs_law():
-    """K_N is proportional to P for Hu 2023 as printed; for a roughness between few and many spots."""
+    """The exponent m of K_N ~ P^m is 1 for Hu 2023 as printed; for `roughness` it is below 1 (few spots)."""
     assert float(hysteresis.stiffness_exponent(drive())) == pytest.approx(1.0, abs=1e-12)
     rough = drive("roughness")
     assert 1.0 / (1.0 + rough.hurst) < hysteresis.stiffness_exponent(rough) < 1.0
@@ -223,7 +223,10 @@ def test_sliders_follow_the_theorem_from_rest(m):
 
 @pytest.mark.parametrize("m", EXPONENTS)
 def test_loops_have_the_area_of_masings_rule(m):
-    """8 times (integral of the first loading minus half its last triangle), from a tenth of M_f on."""
+    """Loop areas are 8 (I - B a/2), I the integral of the first loading B up to the amplitude a.
+
+    Checked from a tenth of M_f on.
+    """
     springs, friction = shared(m)
     place = friction / springs
     most = 8.0 if m == 1.0 else 1.0 / (1.0 - m)

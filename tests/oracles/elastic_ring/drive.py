@@ -5,8 +5,9 @@ ring, which sits on the balls of the wave generator. Between the rings the inter
 pressure over the overlap, a ball pushes by Hertz's law; both contacts open freely. The teeth load the
 flexspline around the major axis, the cup takes the torque away as a uniform shear flow.
 
-What is left out: the cup's stiffness against coning (sections do not know each other), friction between
-the rings, teeth off the neutral line, thickness beside the radius, the inner ring's bending.
+Neglected are the cup's stiffness against coning (the sections are independent), friction between the rings,
+the distance of the teeth from the neutral line, the thickness compared with the radius, and bending of the
+inner ring.
 """
 
 from collections.abc import Callable

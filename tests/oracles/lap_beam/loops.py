@@ -39,7 +39,7 @@ class State:
     load     : a [m kg^0.5/s2]; `q` [m kg^0.5] the modal coordinate
     displacement : (P, 3) [m] relative displacement of the patches since tightening
     force    : (P, 2, n) [Pa] of the sliders
-    loss     : [J] turned into heat on the way here, whole width
+    loss     : [J] dissipated energy since tightening, whole width
     """
 
     load: float
@@ -141,7 +141,7 @@ def frequency(state):
 def masing_losses(states):
     """Losses [J] of cycles by Masing's rules: four times the dissipation in first loading.
 
-    The area under the backbone would take an elastic stiffening of the contact for a negative loss.
+    With the area under the backbone, an elastic stiffening of the contact would count as a negative loss.
     """
     return 4.0 * np.cumsum([state.loss for state in states])
 

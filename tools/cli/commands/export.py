@@ -144,7 +144,7 @@ def _printed_unit(name: str) -> str:
 
 
 def _exports_complete_joint(args: argparse.Namespace, parameter_file: ParameterFile) -> bool:
-    """Whether the exported springs are the stiffness matrix of the complete joint, not its interface's."""
+    """Whether to export the stiffness matrix of the complete joint, instead of springs of the interface."""
     has_members = getattr(parameter_file.values, "has_elastic_members", False)
     return (
         args.what == "springs"

@@ -88,6 +88,7 @@ def _read_option(option: Option, args: argparse.Namespace) -> object:
 def _find_joint(choices: Mapping[str, Procedure], args: argparse.Namespace) -> str:
     """Find the joint to which the columns of the file belong.
 
+    choices : {joint: its procedure}, the procedures of one name
     Raises ValueError if the file has the columns of no joint or of several, or if an option belongs to
     another joint.
     """

@@ -61,7 +61,7 @@ def _run_law(args: argparse.Namespace) -> CommandResult:
 
 
 def _finite_entry(law_column: Any, row_index: int) -> float | None:
-    """Number of a result column in one row, or its one number for all rows; None if it is not finite."""
+    """Value of a result column in one row (a single value holds for all rows); None if it is not finite."""
     value = float(
         np.broadcast_to(law_column, (row_index + 1,) if np.ndim(law_column) == 0 else np.shape(law_column))[
             row_index

@@ -81,7 +81,7 @@ def _run_command(args: argparse.Namespace) -> CommandResult:
 
 
 def _print_messages(messages: Iterable[str], driven_input: str) -> None:
-    """Print messages of the FMU, except that the driven input begins at 0 in place of its start value."""
+    """Print the messages of the FMU; omit the one that says that the driven input starts at 0."""
     for message in messages:
         if not (message.startswith(f"{driven_input} = 0") and "in place of its start value" in message):
             print(message, file=sys.stderr)

@@ -78,7 +78,7 @@ def _declare_sampling(parser: Parser, defaults: str) -> None:
 
 
 def _declare_execution(parser: Parser, folder_help: str, **options: Any) -> None:
-    """Declare the options for the folder of the runs, and where they are done."""
+    """Declare the options for the folder that stores the runs, and for the processes that execute them."""
     declare_output(parser, "--out", OUTPUT_FOLDER, folder_help, allow_overwrite=False, **options)
     workers = parser.add_mutually_exclusive_group()
     declare_argument(workers, "--scheduler", str, "dask scheduler of a cluster, tls://HOST:PORT", "ADDRESS")
@@ -107,7 +107,10 @@ def _is_fmu(joint_or_fmu: str | None) -> bool:
 
 
 def _check_options(args: argparse.Namespace, is_fmu: bool) -> None:
-    """Raise ValueError if an option is missing, or is for FMUs in a study of a joint (or the reverse)."""
+    """Raise ValueError if an option is missing, or does not apply to the subject of the study.
+
+    is_fmu : True: the subject is an FMU. False: it is a joint
+    """
     subject = "an FMU" if is_fmu else "a joint"
     for name in ("params", "points") if is_fmu else ("input", "step"):
         if getattr(args, name) is not None:
@@ -125,7 +128,7 @@ def _sample_count(args: argparse.Namespace, default: int) -> int:
 
 
 def _make_execution(args: argparse.Namespace) -> "Execution":
-    """Where the runs of a study are done, from the options: processes here, or a dask cluster."""
+    """Execution of the runs of a study, from the options: local processes, or a dask cluster."""
     from ...studies.uncertainty.runs import Execution
 
     if args.workers is not None and args.workers < 1:
@@ -137,7 +140,7 @@ def _make_execution(args: argparse.Namespace) -> "Execution":
 def _open_study_folder(
     uncertainty_problem: "UncertaintyProblem", sample_count: int, seed: int, out: Path | None
 ) -> Iterator[None]:
-    """Context that claims the folder in which the runs of a study are stored; without a folder do nothing."""
+    """Context that reserves the folder `out` for the runs of this study; None: nothing is stored."""
     from ...studies.uncertainty import journal
 
     if out is None:
@@ -152,7 +155,7 @@ def _open_study_folder(
 
 
 def _state_study_of_fmu(args: argparse.Namespace, fmu: Path) -> "UncertaintyProblem":
-    """Statement of the study of an FMU, from the options: distributions, outputs, loads."""
+    """Define the uncertainty study of an FMU from the options: distributions, outputs, loads."""
     from ...studies.uncertainty import study
     from ...studies.uncertainty.sweep import state_fmu_problem
     from ...studies.uncertainty.worker import LoadRamp

@@ -74,7 +74,7 @@ class JointStiffness:
 
 
 def rigid_arm(node_position: Array) -> Array:
-    """Matrix T (6, 6) of a rigid arm: motion of the origin by that of a node at r on the same rigid body."""
+    """Matrix T (6, 6) of a rigid arm from a node at r: motion of the origin = T times motion of the node."""
     x, y, z = node_position
     T = np.eye(6)
     T[:3, 3:] = [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]]

@@ -93,7 +93,7 @@ def fit_row_limit(
 def tabulate_load(curve: Curve, area: float, max_error: float) -> LoadTable:
     """Tabulate the load [N] and stiffness [N/m] of an interface law on an area [m2].
 
-    The first row is open, without load.
+    The first row is the open contact, with zero load.
     """
     table = tabulate_law(curve, max_error)
     rows = table.rows * [1.0, area, area]

@@ -81,27 +81,27 @@ class _LibraryJoint:
 
 def write_library(
     folder: Path,
-    file: ParameterFile | None = None,
+    parameter_file: ParameterFile | None = None,
     working_points: WorkingPoints | None = None,
     *,
     overwrite: bool = False,
 ) -> list[Path]:
     """Write the library into a folder; returns the paths of its files.
 
-    file           : parameter file of one joint, in place of its default file
+    parameter_file : parameter file of one joint, in place of its default file
     working_points : {joint: working points}, in place of the default working points
     overwrite      : replace a library of this name that jointfmu did not write
     """
     check_output(folder / LIBRARY_NAME / "package.mo", EXCHANGE_FILE, overwrite)
-    return write_files(folder / LIBRARY_NAME, render_library(file, working_points))
+    return write_files(folder / LIBRARY_NAME, render_library(parameter_file, working_points))
 
 
 def render_library(
-    file: ParameterFile | None = None, working_points: WorkingPoints | None = None
+    parameter_file: ParameterFile | None = None, working_points: WorkingPoints | None = None
 ) -> dict[str, str]:
     """Render all files of the library: {path in the library: text}."""
     joints = [
-        _collect_joint(kind, module, file, (working_points or {}).get(kind.name))
+        _collect_joint(kind, module, parameter_file, (working_points or {}).get(kind.name))
         for kind in KINDS.values()
         if (module := load_tool_module(kind, "modelica"))
     ]
@@ -136,13 +136,13 @@ def render_library(
 def _collect_joint(
     joint_kind: JointKind,
     modelica_module: ModuleType,
-    file: ParameterFile | None,
+    parameter_file: ParameterFile | None,
     working_points: Sequence[WorkingPoint] | None,
 ) -> _LibraryJoint:
     """Collect what the library contains of a joint: parameters, component, records and templates."""
     component: ModelicaComponent = modelica_module.MODELICA_COMPONENT
-    is_given = file is not None and file.joint == joint_kind.name
-    joint_file = file if file and is_given else load_default(joint_kind.name)
+    is_given = parameter_file is not None and parameter_file.joint == joint_kind.name
+    joint_file = parameter_file if parameter_file and is_given else load_default(joint_kind.name)
     used_points = tuple(working_points or (*_read_start_working_point(joint_file), *component.working_points))
     found: Sequence[ModelicaRecord]
     if is_given:
@@ -165,15 +165,15 @@ def _default_records(
 ) -> tuple[ModelicaRecord, ...]:
     """Records of a joint with its default parameters.
 
-    A library that is written for a user's joint contains them, too.
+    They are also part of a library that is written for a user's joint.
     """
     component: ModelicaComponent = module.MODELICA_COMPONENT
     return tuple(component.make_records(load_default(joint), working_points))
 
 
-def _read_start_working_point(file: ParameterFile) -> list[WorkingPoint]:
+def _read_start_working_point(parameter_file: ParameterFile) -> list[WorkingPoint]:
     """Working point given by the start values of the inputs in a parameter file, as a list of one or none."""
-    point = tuple(file.start_value(name) for name in KINDS[file.joint].working_point)
+    point = tuple(parameter_file.start_value(name) for name in KINDS[parameter_file.joint].working_point)
     return [point] if point and point[0] > 0.0 else []
 
 
@@ -245,14 +245,17 @@ def render_system(system: System) -> str:
 
 
 def _find_record(
-    joints: Mapping[str, _LibraryJoint], joint_kind: str, file: ParameterFile, working_point: WorkingPoint
+    joints: Mapping[str, _LibraryJoint],
+    joint_kind: str,
+    parameter_file: ParameterFile,
+    working_point: WorkingPoint,
 ) -> ModelicaRecord | None:
     """Find the record of the library with a joint's parameters at a working point; None if there is none."""
     joint = joints[joint_kind]
     special = joint.component.component_only_parameters
     same = all(
         joint.file.values_by_name.get(name) == value
-        for name, value in file.values_by_name.items()
+        for name, value in parameter_file.values_by_name.items()
         if name not in special
     )
     return joint.records.get(working_point, joint.record if not working_point else None) if same else None
@@ -268,10 +271,10 @@ def _parameter_meanings(joint_kind: JointKind) -> dict[str, str]:
     }
 
 
-def _render_documentation(model: Model, file: ParameterFile) -> dict[str, str]:
+def _render_documentation(model: Model, parameter_file: ParameterFile) -> dict[str, str]:
     """Render sections of the FMU's documentation page for a Modelica annotation: {section: text}."""
     folder = Path(__file__).parent
     page = load_template(find_asset(model, "page.html"), folder, PAGE_FOLDER)
     names = ("what", "law", "trust", "paper")
-    terms = {"model": model, "fmu": False, **law_variables(file)}
+    terms = {"model": model, "fmu": False, **law_variables(parameter_file)}
     return {name: escape_string(page.render(terms, part=name).strip()) for name in names}

@@ -36,7 +36,7 @@ class NewJoint:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NewJointCommand:
-    """How `jointfmu new` makes a joint from a drawing: its options and its function.
+    """Sub-command of `jointfmu new` for a joint: options of the drawing, and function that makes the joint.
 
     description : the joint in words
     example     : options of an example, as text

@@ -174,7 +174,7 @@ class TighteningMethod:
 
     title               : name of the method in words
     factor              : least and greatest tightening factor alpha_A = F_Mmax/F_Mmin [1]
-    depends_on_friction : whether the friction decides on the preload
+    depends_on_friction : whether the preload depends on the friction in thread and head
     """
 
     title: str

@@ -248,8 +248,11 @@ def describe_stated_bolt(thread_name: str, property_class: str) -> str:
 def proof_load(hole_diameter: float, preload_source: str = "") -> tuple[float, str] | None:
     """Proof load [N] of the bolts that the source of the preload states, and its description.
 
-    Without a stated bolt: that of the largest bolt, of the strongest class, that passes a hole [m]. None if
-    no bolt of the tables fits the hole.
+    If the source states no bolt: proof load of the largest bolt that fits through the hole, in the strongest
+    property class. None if no bolt of the tables fits.
+
+    hole_diameter  : [m] of the clearance hole
+    preload_source : source text of the preload in a parameter file
     """
     threads = read_threads()
     stated = re.search(

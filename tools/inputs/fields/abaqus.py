@@ -61,7 +61,7 @@ def read_abaqus(paths: Sequence[Path], length_unit: float, pressure_unit: float)
 
     Coordinates and nodal areas come from the listings, or from an input deck among the files.
 
-    length_unit, pressure_unit : units of the file in SI units
+    length_unit, pressure_unit : size of the files' length unit [m] and pressure unit [Pa]
 
     Raises ValueError with file and line: the file cannot be read, a column is missing, a row does not fit its
     columns, a node has two values.

@@ -29,7 +29,7 @@ PRESSURE_COLUMN = "PRES"
 def read_ansys(paths: Sequence[Path], length_unit: float, pressure_unit: float) -> NodalResult:
     """Read a nodal contact result from ANSYS listings, or from one listing and an archive.
 
-    length_unit, pressure_unit : units of the files in SI units
+    length_unit, pressure_unit : size of the files' length unit [m] and pressure unit [Pa]
 
     Raises ValueError with file and line: a file cannot be read, a table is missing, a node has two values, an
     element has a node that is not listed.

@@ -42,7 +42,10 @@ class ContactPlane:
     body_side: str | None = None
 
     def axis_indices(self) -> tuple[int, int, int]:
-        """Indices of the joint's x, y and normal among the file's axes; ValueError if rows equals normal."""
+        """Axes of the file (0: x, 1: y, 2: z) that are the joint's x, y and normal.
+
+        Raises ValueError if the bolt rows are along the normal.
+        """
         n = AXIS_NAMES.index(self.normal_axis)
         x = (n + 1) % 3 if self.bolt_row_axis is None else AXIS_NAMES.index(self.bolt_row_axis)
         if x == n:
@@ -131,7 +134,10 @@ def _check_surface(contact_surface: ContactSurface) -> None:
 
 
 def _contact_faces(nodal_result: NodalResult, contact_plane: ContactPlane) -> list[NodeIndices]:
-    """Element faces of the contact: in the plane of the nodes with pressure, of the bodies with pressure."""
+    """Element faces in the contact plane that belong to bodies with pressure.
+
+    The contact plane contains all nodes with pressure; ValueError if these nodes are not plane.
+    """
     loaded = np.flatnonzero(np.nan_to_num(nodal_result.pressure) != 0.0)
     if not loaded.size:
         raise ValueError(f"{nodal_result.path}: no node has a pressure")

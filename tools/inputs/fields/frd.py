@@ -33,7 +33,7 @@ CONTACT_RESULT_NAME, PRESSURE_COMPONENT = "CONTACT", "CPRESS"
 def read_frd(path: Path, length_unit: float, pressure_unit: float) -> NodalResult:
     """Read the last contact result of a CalculiX file.
 
-    length_unit, pressure_unit : units of the file in SI units
+    length_unit, pressure_unit : size of the file's length unit [m] and pressure unit [Pa]
 
     Raises ValueError with file and line: no ASCII .frd file, no contact result, a line that cannot be read.
     """

@@ -206,7 +206,7 @@ class FiniteElementMesh:
         return np.array([listed_values.get(name, np.nan) for name in self.node_numbers.tolist()])
 
     def unknown_nodes(self, node_numbers: Iterable[int]) -> set[int]:
-        """Select the node numbers that the mesh does not define."""
+        """Node numbers that the mesh does not define, out of `node_numbers`."""
         return set(node_numbers) - set(self.node_numbers.tolist())
 
     def nodal_result(
@@ -219,10 +219,9 @@ class FiniteElementMesh:
     ) -> NodalResult:
         """Nodal result from pressures that a file lists for nodes of this mesh.
 
-        path : the file
-
+        path             : the file
         listed_values    : {node number: pressure in the unit of the file}
-        length_unit, pressure_unit : units of mesh and listing in SI units
+        length_unit, pressure_unit : size of the length unit of the mesh [m], of the pressure unit [Pa]
         omits_open_nodes : True: the listing leaves out open nodes. False: the contact consists of the faces
                            whose corners are all listed
         """

@@ -25,7 +25,7 @@ def read_mesh(
 ) -> NodalResult:
     """Read a nodal contact result from the point data of a mesh.
 
-    length_unit, pressure_unit : units of the file in SI units
+    length_unit, pressure_unit : size of the file's length unit [m] and pressure unit [Pa]
     point_data_name : name of the point data with the pressure; NAME:3 is the third component
 
     Raises ValueError (one line): meshio is missing or cannot read the file, the point data do not exist (the

@@ -112,7 +112,7 @@ class FieldReader:
         return meshfile.read_mesh(path, length, pressure, self.point_data_name)
 
     def _unit_sizes(self, path: Path) -> tuple[float, float]:
-        """Units of length and pressure in SI units; ValueError if one is missing."""
+        """Size of the length unit [m] and of the pressure unit [Pa]; ValueError if one is not stated."""
         for value, name, units in (
             (self.length_unit, "length", LENGTH_UNITS),
             (self.pressure_unit, "pressure", PRESSURE_UNITS),

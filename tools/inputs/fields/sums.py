@@ -57,8 +57,9 @@ def max_moment_ratio(joint: BoltedInterface, normalised_pressure: PressureDistri
 
 
 def initial_load_cases(moment_ratio_limit: float) -> list[LoadCase]:
-    """Load cases at the start of a reduction: nodes are selected for these, others are added if they err.
+    """Load cases at the start of a reduction.
 
+    The search adds further load cases in which the selected nodes miss the tolerance.
     moment_ratio_limit : largest moment over the moment that unloads a row of bolts [1]
     """
     moments = [moment_ratio_limit * m for m in (-1.0, -0.97, -0.9, -0.8, -0.5, 0.0, 0.5, 0.8, 0.9, 0.97, 1.0)]
@@ -143,7 +144,7 @@ class LoadCaseSums:
     sum_scales: Array
 
     def select_load_cases(self, selected_cases: NDArray[np.intp] | NDArray[np.bool_]) -> "LoadCaseSums":
-        """Select the sums in some of the load cases."""
+        """Sums in the load cases that a mask or indices select."""
         loads = tuple(self.load_cases[i] for i in np.arange(len(self.load_cases))[selected_cases])
         return LoadCaseSums(
             loads,

@@ -177,8 +177,9 @@ class Loops:
         return steps
 
     def find_bearing(self) -> tuple[float, float] | None:
-        """Range of motion of slip before the joint bears, and force change of slip; None if it never bears.
+        """Find slip through a clearance, until the joint bears (its bolts touch the holes).
 
+        Returns the range of motion of this slip and its force change; None if the joint never bears.
         After a reversal, friction alone makes a joint softer and softer. A joint that becomes stiffer again
         has slipped through a clearance.
         """
@@ -279,15 +280,13 @@ class Loops:
     ) -> float:
         """Measured minus computed force step between two slipping branches, over its standard deviation [1].
 
-        law and start_motion give the computed step; start_motion : fitted motion at the turning point of each
-        branch
 
         start_motion : fitted motion (branches) at the turning points
         """
         k = slip_step.branch_number
 
         def mean_change(samples: NDArray[np.int64], start: float) -> float:
-            """Force change [N] by the law, from the start of a branch to its samples: mean of all samples."""
+            """Force change of the law since the start of a branch, averaged over samples [N or N.m]."""
             return float(np.mean(law.force_change(self.motion[samples], np.full(samples.size, start))))
 
         before, after = start_motion[k - 1], start_motion[k]

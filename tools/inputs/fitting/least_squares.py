@@ -309,7 +309,7 @@ class UnknownExchange:
     quantity_label: str
 
     def derived_unknown(self, unknowns: Mapping[str, Unknown]) -> Unknown:
-        """Unknown for the derived quantity; it starts at the value for the start values of `unknowns`."""
+        """Unknown of the fit for the derived quantity; its start value follows from those of `unknowns`."""
         start = self.derived_quantity({name: u.start_value for name, u in unknowns.items()})
         return Unknown(self.quantity_label, self.unit, start, 0.0, np.inf)
 

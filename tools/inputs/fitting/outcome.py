@@ -38,7 +38,7 @@ MIN_OVER_MAX_SINGULAR_VALUE = 1e-5
 
 @dataclass(frozen=True, slots=True)
 class ParameterCombination:
-    """Combination prod name^exponent of parameters, statistically independent of the other combinations.
+    """Product of powers of fitted parameters, statistically independent of the other combinations.
 
     exponents          : {name: exponent}, the largest is 1; of a parameter with a scale: of exp(name/scale)
     relative_deviation : relative standard deviation [1]; infinite if the data contain no information about it
@@ -52,7 +52,7 @@ class ParameterCombination:
     scales: Mapping[str, str] = field(default_factory=dict)
 
     def __str__(self) -> str:
-        """Combination as text: prod name^exponent."""
+        """Text of the combination, as in `E^1 nu^-0.5`."""
         factors = {
             name: f"exp({name}/{self.scales[name]})" if name in self.scales else name
             for name in self.exponents
@@ -64,7 +64,7 @@ class ParameterCombination:
 
 
 def max_determined_deviation(unknown: Unknown) -> float:
-    """Largest standard deviation of the logarithm [1] of a parameter that counts as determined."""
+    """Limit [1] of the standard deviation of ln(parameter), up to which a parameter counts as determined."""
     if unknown.scale or unknown.lower_bound <= 0.0 or not np.isfinite(unknown.upper_bound):
         return MAX_PARAMETER_DEVIATION
     return min(

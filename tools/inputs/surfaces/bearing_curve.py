@@ -63,7 +63,7 @@ class HeightSample:
 
 
 def tail_ratio(sample: HeightSample) -> float:
-    """Height of the upper tail of the heights over their rms height [1]; 1 for Gaussian heights."""
+    """Rms height of Gaussian heights with the same upper tail, over the rms height of the sample [1]."""
     return BearingCurve.of_sample(sample).tail_height / float(sample.heights.std())
 
 
@@ -85,9 +85,9 @@ def gaussian_mean_excess(share: Array) -> Array:
 
 
 def skewed_tail_ratio(skewness: float) -> float:
-    """Height of the upper tail over the rms height [1] of lognormal heights with a skewness; Gaussian: 1.
+    """Ratio `tail_ratio` [1] of lognormal heights with a given skewness; 1 for a skewness of 0.
 
-    With a negative skewness the heights are mirrored: pits below a flat top.
+    For a negative skewness the lognormal heights are mirrored: pits below a flat top.
     """
     from scipy.optimize import brentq
     from scipy.special import ndtr, ndtri

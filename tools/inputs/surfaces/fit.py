@@ -114,7 +114,7 @@ def fit_law(
 def _search_range(series: ScaleSeries) -> SelfAffineLaw:
     """Fit the self-affine law over the longest range in which it holds.
 
-    Without one, over the range with the least drift plus deviation.
+    If it holds over no range: fit over the range with the smallest sum of drift and deviation.
     """
     n = series.scale.size
     step = max(1, n // 10)
@@ -221,7 +221,7 @@ def _excess_deviation(
     correlation, deviations = _correlation_matrix(log_scale), np.geomspace(MIN_LAW_DEVIATION, 3.0, 60)
 
     def is_sufficient(deviation: float) -> bool:
-        """Whether chi-squared is at most its expected value for this standard deviation."""
+        """Whether this excess deviation lowers chi-squared to its expected value or below."""
         chi_squared = residual @ np.linalg.solve(
             statistical_covariance + deviation**2 * correlation, residual
         )

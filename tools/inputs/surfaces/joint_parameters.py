@@ -62,7 +62,7 @@ def dimension_meaning(joint: str) -> str:
 
 
 def with_surface(
-    file: ParameterFile,
+    parameter_file: ParameterFile,
     identified_surface: Identification,
     method: str | None = None,
     set_undetermined: bool = False,
@@ -76,53 +76,55 @@ def with_surface(
     set_undetermined : set D and G or the Hurst exponent even if they are not determined; ValueError if one is
         not finite
     """
-    sure = set_undetermined or undetermined_reason(identified_surface, file.joint) is None
-    if file.law == ROUGHNESS_LAW:
-        file = _with_roughness_law(file, identified_surface, method, sure)
-    elif file.law == TABLE_LAW:
-        return file  # its points follow from the heights: nothing to compare
+    sure = set_undetermined or undetermined_reason(identified_surface, parameter_file.joint) is None
+    if parameter_file.law == ROUGHNESS_LAW:
+        parameter_file = _with_roughness_law(parameter_file, identified_surface, method, sure)
+    elif parameter_file.law == TABLE_LAW:
+        return parameter_file  # its points follow from the heights: nothing to compare
     elif sure:
-        file = _with_fractal_parameters(file, identified_surface, method)
+        parameter_file = _with_fractal_parameters(parameter_file, identified_surface, method)
     for side, scan in identified_surface.roughness_by_side.items():
         name = identified_surface.file_names[min(side, len(identified_surface.file_names)) - 1]
         source = f"measured: {name}; waves up to {scan.longest_wave:.4g} m"
-        file = file.with_roughness({f"Rq{side}": scan.h}, "measured", source)
-    return file
+        parameter_file = parameter_file.with_roughness({f"Rq{side}": scan.h}, "measured", source)
+    return parameter_file
 
 
 def _with_roughness_law(
-    file: ParameterFile, identified_surface: Identification, method: str | None, set_hurst: bool
+    parameter_file: ParameterFile, identified_surface: Identification, method: str | None, set_hurst: bool
 ) -> ParameterFile:
     """Set slope, longest wave and, if it is determined, the Hurst exponent of the law `roughness`."""
     shortest, longest = identified_surface.scans[0].shortest_wave, identified_surface.longest_wave
     source = f"measured: {_describe_files(identified_surface)}; waves up to {longest:.4g} m"
-    file = file.with_values({"longest_wave": longest}, "measured", source)
-    file = file.with_values(
+    parameter_file = parameter_file.with_values({"longest_wave": longest}, "measured", source)
+    parameter_file = parameter_file.with_values(
         {"slope": identified_surface.slope}, "measured", f"{source}, down to {shortest:.3g} m"
     )
     if not set_hurst:
-        return file
+        return parameter_file
     result = identified_surface.select_best_result(method=method)
-    return file.with_values({"hurst": result.fit.H}, "measured", _describe_fit(identified_surface, result))
+    return parameter_file.with_values(
+        {"hurst": result.fit.H}, "measured", _describe_fit(identified_surface, result)
+    )
 
 
 def _with_fractal_parameters(
-    file: ParameterFile, identified_surface: Identification, method: str | None
+    parameter_file: ParameterFile, identified_surface: Identification, method: str | None
 ) -> ParameterFile:
     """Set D and G of the rough surfaces of the joint; ValueError if one is not finite."""
-    surfaces = {surface.parameter_prefix: surface for surface in KINDS[file.joint].surfaces}
-    for name, (value, result) in fractal_parameters(identified_surface, file.joint, method).items():
+    surfaces = {surface.parameter_prefix: surface for surface in KINDS[parameter_file.joint].surfaces}
+    for name, (value, result) in fractal_parameters(identified_surface, parameter_file.joint, method).items():
         if not math.isfinite(value):
             D, G = result.profile.D.value, result.profile.G
             raise ValueError(
                 f"{name} of {' and '.join(identified_surface.file_names)} is not determined (D = {D:.2f}, "
                 "the interval of "
-                f"G spans {G.interval_decades:.0f} decades): {file.joint} needs a number"
+                f"G spans {G.interval_decades:.0f} decades): {parameter_file.joint} needs a number"
             )
         prefix, _, symbol = name.rpartition(".")
         source = _describe_source(identified_surface, result, surfaces[prefix], symbol)
-        file = file.with_values({name: value}, "measured", source)
-    return file
+        parameter_file = parameter_file.with_values({name: value}, "measured", source)
+    return parameter_file
 
 
 def _describe_files(identified_surface: Identification) -> str:

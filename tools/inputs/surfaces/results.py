@@ -107,8 +107,8 @@ class Identification:
     warnings    : messages for the user
     is_textured : whether a surface is textured (not isotropic)
     scans       : roughness of each file
-    gap         : heights of the measured sides together
-    gap_parts   : the same of parts of the scans
+    gap         : sample of the gap heights of the measured sides
+    gap_parts   : samples of the gap heights, one for each part of the scans
     side        : for a single surface, its side of the contact, one of SCAN_SIDES; None: not given
     """
 
@@ -141,12 +141,12 @@ class Identification:
 
     @property
     def tail_ratio(self) -> float:
-        """Height of the upper tail of the heights over their rms height [1]; 1 for Gaussian heights."""
+        """Rms height of Gaussian heights with the same upper tail as the gap, over the rms gap height [1]."""
         return tail_ratio(self.gap)
 
     @property
     def is_gaussian(self) -> bool:
-        """Whether the tail is as high as that of Gaussian heights, or parts of the scan disagree."""
+        """Whether the upper tail agrees with Gaussian heights; also true if parts of the scan disagree."""
         ratios = [self.tail_ratio, *map(tail_ratio, self.gap_parts)]
         return not (max(ratios) < 1.0 / MAX_GAUSSIAN_TAIL_RATIO or min(ratios) > MAX_GAUSSIAN_TAIL_RATIO)
 
@@ -163,7 +163,7 @@ class Identification:
     def select_best_result(self, direction: str | None = None, method: str | None = None) -> FractalResult:
         """Best result in a direction (None: the whole surface): self-affine, smallest standard error of D.
 
-        A result with D at an end of its interval comes last, because that end cuts its error off.
+        A result with D at an end of its interval comes last, because its standard error is not valid.
         """
         candidates = [r for r in self.select_results_in_direction(direction) if method in (None, r.method)]
         return min(

@@ -211,9 +211,9 @@ HANN_CORRELATED_MODES = 35.0 / 18.0
 def power_spectrum(heights: Heights, direction: str) -> ScaleSeries:
     """Frequency times the one-sided power spectral density: Phi [m2], the variance per ln(frequency).
 
-    Of a profile, of the lines along x or y of a map, or averaged over all directions ("areal"). With a Hann
-    window, smoothed over ln(frequency) with a Gaussian kernel. Wavelengths are from 5 spacings to a third of
-    the length. `heights` must have no missing points.
+    The spectrum is that of a profile, of the lines along x or y of a map, or the average over all directions
+    ("areal"). It is computed with a Hann window, and smoothed over ln(frequency) with a Gaussian kernel.
+    Wavelengths are from 5 spacings to a third of the length. `heights` must have no missing points.
     """
     z = np.atleast_2d(heights.z)
     if direction == "areal" and isinstance(heights, ArealMap):

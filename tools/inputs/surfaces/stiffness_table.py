@@ -84,7 +84,8 @@ def points_from_solution(
     """Points of the interface law `table` from a solution by boundary elements.
 
     scans      : heights without form, of one side or of both
-    both_sides : whether the single scan describes both sides: its gap is that to itself, turned
+    both_sides : whether the single scan describes both sides; the gap is then that of the scan and its copy,
+                 mirrored in y
     """
     from .solve import gap_of_scans, solve_stiffness
 
@@ -110,14 +111,14 @@ def has_table_law(joint: str) -> bool:
     )
 
 
-def with_points(file: ParameterFile, points: InterfacePoints) -> ParameterFile:
+def with_points(parameter_file: ParameterFile, points: InterfacePoints) -> ParameterFile:
     """Copy of a parameter file of the law `table` with new points of the stiffness."""
     values = {
         "table.pressure": tuple(float(f"{p:.6g}") for p in points.pressure),
         "table.stiffness": tuple(float(f"{k:.6g}") for k in points.stiffness),
         "table.factor": 1.0,
     }
-    file = file.with_values(values, "derived", points.source)
+    parameter_file = parameter_file.with_values(values, "derived", points.source)
     text = "4 G'/E* of elastic contact spots (Mindlin 1949), not measured"
-    file = file.with_values({"table.ratio": points.ratio}, "estimate", text)
-    return replace(file, ranges={**file.ranges, "table.factor": points.factor_range})
+    parameter_file = parameter_file.with_values({"table.ratio": points.ratio}, "estimate", text)
+    return replace(parameter_file, ranges={**parameter_file.ranges, "table.factor": points.factor_range})

@@ -84,10 +84,10 @@ def _default_preload(joint: AnyBoltedJoint) -> float:
     return 30e3 if borne is None else min(30e3, 0.7 * borne[0])
 
 
-def _proof_load(file: ParameterFile) -> tuple[float, str] | None:
+def _proof_load(parameter_file: ParameterFile) -> tuple[float, str] | None:
     """Proof load [N] of the bolts of a parameter file, and the name of this limit; None if not known."""
-    hole = PlaneLayout.from_joint(file.values).hole_diameter
-    return proof_load(hole, file.sources.get("inputs.preload", "")) if hole else None
+    hole = PlaneLayout.from_joint(parameter_file.values).hole_diameter
+    return proof_load(hole, parameter_file.sources.get("inputs.preload", "")) if hole else None
 
 
 NOMINAL_PRESSURE = NominalPressureModel(

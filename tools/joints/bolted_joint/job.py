@@ -29,7 +29,7 @@ _FMU_NAME = "BoltedJoint"
 
 
 def _check_separation(folder: Path, ramp_result: ramp.RampResult) -> tuple[str, float]:
-    """Normal force of the FMU while it is pulled apart, compared with the integral of its stiffness."""
+    """Compare the normal force of the FMU under growing separation with the integral of its stiffness."""
     pulled = ramp.run_ramp(folder / f"{_FMU_NAME}.fmu", "s_rel_z", 5e-6, 1e-8, {"preload": 9e3}).columns
     force = -cumulative_simpson(pulled["K_zz"], x=pulled["s_rel_z"], initial=0.0)
     return "f_z pulled apart against the integral of K_zz ds (scipy, Simpson)", relative_deviation(
@@ -89,7 +89,7 @@ VIBRATION_PRELOADS = (3e3, 9e3, 15e3, 30e3)
 
 
 def _rest_state(path: Path, preload: float, parameters: Mapping[str, Any]) -> WorkingPoint:
-    """Tightened joint at a preload [N], about which the simulated system vibrates."""
+    """Working point of the joint tightened to a preload [N], about which the body vibrates in shear."""
     start = {**parameters, "preload": preload, "v_rel_x": 1.0}
     with Slave(path, start, (), ("K_xx", "f_x")) as law:
         K, dashpot = law.get_outputs()

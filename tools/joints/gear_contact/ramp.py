@@ -16,7 +16,7 @@ from ...studies.checks import integrate_logarithmically, relative_deviation
 
 
 def _check_approach(folder: Path, ramp_result: RampResult) -> tuple[str, float]:
-    """Approach along the ramp of the FMU, compared with the integral of its compliance."""
+    """Compare the approach along the load ramp of the FMU with the integral of the law's compliance."""
     law = load_default("gear_contact").values
     assert isinstance(law, GearContactParameters)
 

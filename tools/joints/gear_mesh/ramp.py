@@ -20,7 +20,7 @@ _FULL_CONTACT_FORCE = 10.0
 
 
 def _check_deflection_and_work(folder: Path, ramp_result: RampResult) -> tuple[str, float]:
-    """Deflection and work along the ramp of the FMU, compared with integrals of its stiffness."""
+    """Compare deflection and work along the load ramp of the FMU with integrals of the stiffness."""
     mesh = load_default("gear_mesh").values
     assert isinstance(mesh, GearMeshParameters)
 

@@ -47,8 +47,8 @@ def friction_and_ratio(catalogue_entry: CatalogueEntry) -> dict[str, float]:
 class SimulatedDrive:
     """Harmonic drive evaluated in Python, with the methods of a running FMU. It starts at rest at angle 0."""
 
-    def __init__(self, model: Model, file: ParameterFile) -> None:
-        self._joint = open_joint(model, file)
+    def __init__(self, model: Model, parameter_file: ParameterFile) -> None:
+        self._joint = open_joint(model, parameter_file)
         self._path = [(0.0,) * len(_FLANGE_INPUT_NAMES)]
         self._inputs = self._path[0]
 
@@ -176,9 +176,9 @@ def open_fmu_test_rig(path: Path, parameters: Mapping[str, float]) -> Iterator[D
         yield DriveTestRig(drive, ratio, presliding, stiffness)
 
 
-def make_test_rig(model: Model, file: ParameterFile) -> DriveTestRig:
+def make_test_rig(model: Model, parameter_file: ParameterFile) -> DriveTestRig:
     """Make a test rig of the drive with the parameters of a file. No FMU is needed."""
-    steady = file.with_values(_STEADY_PARAMETERS, "user", "steady")
+    steady = parameter_file.with_values(_STEADY_PARAMETERS, "user", "steady")
     drive = SimulatedDrive(model, steady)
     return DriveTestRig(drive, steady.values.ratio, steady.values.presliding, drive.get_outputs()[2])
 
@@ -195,11 +195,11 @@ def hysteresis_loss(spring: HarmonicDriveSpring) -> float:
 
 
 def lost_motion(spring: HarmonicDriveSpring, torque_ratio: float = LOST_MOTION_TORQUE_OVER_RATED) -> float:
-    """Lost motion [rad]: change of the mean angle of both branches between -4 % and +4 % of the rated torque.
+    """Lost motion [rad]: change of the mean angle of both branches between two small torques -T and +T.
 
-    The branches are those of the loop up to the rated torque.
+    The branches are those of the hysteresis loop between plus and minus the rated torque.
 
-    torque_ratio : share of the rated torque [1], the 4 %
+    torque_ratio : T over the rated torque [1]
     """
     rated = float(spring.joint.rated_torque)
     ends = (

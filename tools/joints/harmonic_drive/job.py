@@ -29,14 +29,14 @@ from . import efficiency
 
 
 def _check_compliance(folder: Path, ramp_result: ramp.RampResult) -> tuple[str, float]:
-    """Wind-up along the ramp of the FMU with torque input, compared with the integral of its compliance."""
+    """Compare the wind-up along the ramp of the FMU with torque input with the integral of its compliance."""
     c = ramp_result.columns
     phi = cumulative_simpson(1.0 / c["K_WTS"], x=c["tau"], initial=0.0)
     return "phi_rel against the integral of dT/K_WTS (scipy, Simpson)", relative_deviation(c["phi_rel"], phi)
 
 
 def _check_stiffness(folder: Path, ramp_result: ramp.RampResult) -> tuple[str, float]:
-    """Torque along the ramp of the FMU with motion input, compared with the integral of its stiffness."""
+    """Compare the torque along the ramp of the FMU with motion input with the integral of its stiffness."""
     c = ramp_result.columns
     tau = cumulative_simpson(c["K_WTS"], x=c["phi_rel"], initial=0.0)
     return "tau against the integral of K_WTS dphi (scipy, Simpson)", relative_deviation(c["tau"], tau)
@@ -186,7 +186,7 @@ def _vibration_torques(path: Path, parameters: Mapping[str, float]) -> list[floa
 
 
 def _rest_state(path: Path, torque: float, parameters: Mapping[str, float]) -> WorkingPoint:
-    """Working point of a drive under a torque [N.m], about which the simulated system vibrates."""
+    """Working point of a drive under a torque [N.m], about which the body vibrates."""
     with Slave(path, {**parameters, "w2": 1.0}, ("w1",), ("tau",)) as dashpot:
         (damping,) = dashpot.get_outputs()
     with Slave(path, parameters, ("phi2", "w2"), ("tau", "K_WTS")) as law:

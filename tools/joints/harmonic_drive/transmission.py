@@ -14,14 +14,17 @@ from jointfmu.quantity import Array
 from ...exchange.robots.transmission import Transmission
 
 
-def make_transmission(file: ParameterFile) -> Transmission:
+def make_transmission(parameter_file: ParameterFile) -> Transmission:
     """Transmission of a robot with the spring and friction of a drive.
 
     Raises ValueError if the joint of the file is not a drive.
     """
-    if file.joint != KIND.name:
-        raise ValueError(f"{file.name} is a {file.joint}, no drive of a motor; allowed is a {KIND.name}")
-    drive: DriveParameters = file.values
+    if parameter_file.joint != KIND.name:
+        raise ValueError(
+            f"{parameter_file.name} is a {parameter_file.joint}, no drive of a motor; "
+            f"allowed is a {KIND.name}"
+        )
+    drive: DriveParameters = parameter_file.values
     spring = HarmonicDriveSpring.tabulate(drive)
 
     def wind_up(torques: ArrayLike) -> Array:
@@ -33,7 +36,7 @@ def make_transmission(file: ParameterFile) -> Transmission:
         return np.array(found)
 
     return Transmission(
-        name=file.name,
+        name=parameter_file.name,
         ratio=drive.ratio,
         damping=drive.d,
         rated_torque=drive.rated_torque,

@@ -269,29 +269,33 @@ def _slider_span(
     )
 
 
-def _list_compiled_parameters(file: ParameterFile) -> Iterator[str]:
+def _list_compiled_parameters(parameter_file: ParameterFile) -> Iterator[str]:
     """Yield the parameters that the page must not change: values compiled into the C code depend on them."""
-    kind = KINDS[file.joint]
-    for name, value in file.values_by_name.items():
+    kind = KINDS[parameter_file.joint]
+    for name, value in parameter_file.values_by_name.items():
         if isinstance(value, float):
             try:
-                changed = file.with_values({name: value + 1.0}, "user", "").values
+                changed = parameter_file.with_values({name: value + 1.0}, "user", "").values
             except ValueError:
                 continue
             if any(line.startswith(name) for line in kind.find_contradictions(changed)):
                 yield name
 
 
-def _entries_to_json(model: Model, file: ParameterFile) -> dict[str, dict[str, object]]:
+def _entries_to_json(model: Model, parameter_file: ParameterFile) -> dict[str, dict[str, object]]:
     """Entries that a parameter file may have: {structured name: {unit, value, default, interval}}.
 
     value    : value in the module's first file; roughnesses and start values of inputs have none
     default  : value if a file does not have the entry
     interval : lower and upper end, and whether they are open, of numbers that the C code does not check
     """
-    exposed, flat, variables = model.parameter_fields(), file.values_by_name, KINDS[model.joint].variables
+    exposed, flat, variables = (
+        model.parameter_fields(),
+        parameter_file.values_by_name,
+        KINDS[model.joint].variables,
+    )
     rows: dict[str, dict[str, object]] = {}
-    for name, item in declared_entries(model.joint, type(file.values)).items():
+    for name, item in declared_entries(model.joint, type(parameter_file.values)).items():
         section, _, leaf = name.partition(".")
         if section not in ("inputs", "roughness", "comparison") and name not in flat:
             continue  # the entry belongs to another alternative of a group
@@ -314,17 +318,17 @@ def _interval_to_json(interval: Interval) -> list[float | bool | None]:
     return [*ends, interval.low_open, interval.high_open]
 
 
-def _parameter_set_to_json(file: ParameterFile, model: Model) -> dict[str, object]:
+def _parameter_set_to_json(parameter_file: ParameterFile, model: Model) -> dict[str, object]:
     """JSON object of a parameter file: values of exposed parameters, start values of inputs, TOML text."""
     names = model.parameter_fields()
-    values = {name: value for name, value in file.values_by_name.items() if name in names}
-    inputs = {v.name: file.start_value(v.name) for v in model.inputs}
+    values = {name: value for name, value in parameter_file.values_by_name.items() if name in names}
+    inputs = {v.name: parameter_file.start_value(v.name) for v in model.inputs}
     return {
-        "name": file.name,
+        "name": parameter_file.name,
         "values": values,
         "fixed": {},
         "inputs": inputs,
-        "toml": format_parameter_file(file),
+        "toml": format_parameter_file(parameter_file),
     }
 
 
@@ -352,12 +356,14 @@ def _published_points(model: Model, laboratory_model: LaboratoryModel) -> Iterat
             }
 
 
-def _contact_map_to_json(laboratory_model: LaboratoryModel, file: ParameterFile) -> dict[str, object] | None:
+def _contact_map_to_json(
+    laboratory_model: LaboratoryModel, parameter_file: ParameterFile
+) -> dict[str, object] | None:
     """JSON object of the map over the contact; None if the joint has none."""
     picture = laboratory_model.contact_map
     if picture is None:
         return None
-    marks, what = picture.compute_marks(file.values)
+    marks, what = picture.compute_marks(parameter_file.values)
     row = {
         "name": picture.name,
         "doc": picture.doc,

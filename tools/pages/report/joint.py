@@ -152,19 +152,19 @@ class _ReportRow(NamedTuple):
     source: str
 
 
-def write_joint_report(path: Path, file: ParameterFile, fmu: str | None = None) -> None:
+def write_joint_report(path: Path, parameter_file: ParameterFile, fmu: str | None = None) -> None:
     """Write the self-contained page of a parameter file for one of the joint's FMUs; default: the first.
 
     Raises ValueError if the joint has no such FMU, or the file cannot be written.
     """
-    write_text(path, _render_page(KINDS[file.joint].find_model(fmu), file))
+    write_text(path, _render_page(KINDS[parameter_file.joint].find_model(fmu), parameter_file))
 
 
-def _render_page(model: Model, file: ParameterFile) -> str:
+def _render_page(model: Model, parameter_file: ParameterFile) -> str:
     """Render the report page of one joint as HTML text."""
     set_status_text("curves over the load")
-    course = LoadHistory(model, file)
-    folder, rows = Path(__file__).parent, _report_rows(file)
+    course = LoadHistory(model, parameter_file)
+    folder, rows = Path(__file__).parent, _report_rows(parameter_file)
     module = load_tool_module(KINDS[model.joint], "report")
     set_status_text("loops")
     loops = course.compute_loops() if model.load_cycle else None
@@ -174,7 +174,7 @@ def _render_page(model: Model, file: ParameterFile) -> str:
     if module and model.name in module.REPORT_FIGURES:
         figures += module.REPORT_FIGURES[model.name](course)
     compared = (
-        module.CATALOGUE_COMPARISONS[model.name](model, file)
+        module.CATALOGUE_COMPARISONS[model.name](model, parameter_file)
         if module and model.name in module.CATALOGUE_COMPARISONS
         else []
     )
@@ -182,18 +182,18 @@ def _render_page(model: Model, file: ParameterFile) -> str:
         model=course.model,
         spring=course.spring,
         fmu=True,
-        **law_variables(file),
-        file=file,
+        **law_variables(parameter_file),
+        file=parameter_file,
         version=__version__,
         figures=[(figure, encode_panels(figure.panels)) for figure in figures],
-        opening=summarise_joint(course, loops, list_parameter_file_entries(file)),
+        opening=summarise_joint(course, loops, list_parameter_file_entries(parameter_file)),
         beside=_comparison_rows(compared),
         drawings=draw_further_charts(course.model, course.spring),
         rows=rows,
         origins=[
             (kind, ORIGIN_MEANINGS[kind], [r.name for r in rows if r.origin == kind]) for kind in ORIGINS
         ],
-        judgement=judge_joint_stiffness(file),
+        judgement=judge_joint_stiffness(parameter_file),
         range=_describe_range(course),
         topics=VALIDITY_HEADINGS,
         style=style_sheet(),
@@ -201,13 +201,13 @@ def _render_page(model: Model, file: ParameterFile) -> str:
     )
 
 
-def _report_rows(file: ParameterFile) -> list[_ReportRow]:
+def _report_rows(parameter_file: ParameterFile) -> list[_ReportRow]:
     """Rows of the report's table for all entries of the parameter file."""
     return [
         _ReportRow(
             e.name, *format_quantity(e.value, e.unit), _format_si_value(e), e.meaning, e.origin, e.source
         )
-        for e in list_parameter_file_entries(file)
+        for e in list_parameter_file_entries(parameter_file)
     ]
 
 

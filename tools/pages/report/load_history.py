@@ -32,13 +32,13 @@ class LoadHistory:
                    near the ramp
     """
 
-    def __init__(self, model: Model, file: ParameterFile) -> None:
-        self.file, self.spring = file, model.tabulate(file.values)
-        self.start_values = {v.name: file.start_value(v.name) for v in model.inputs}
-        self.model = model.with_parameters(file.joint, file.values).with_load_range(
+    def __init__(self, model: Model, parameter_file: ParameterFile) -> None:
+        self.file, self.spring = parameter_file, model.tabulate(parameter_file.values)
+        self.start_values = {v.name: parameter_file.start_value(v.name) for v in model.inputs}
+        self.model = model.with_parameters(parameter_file.joint, parameter_file.values).with_load_range(
             self.spring, self.start_values
         )
-        self._engine = open_joint(self.model, file)
+        self._engine = open_joint(self.model, parameter_file)
         self.law_limit = self._find_law_limit()
 
     def compute_ramp(self) -> dict[str, Array]:

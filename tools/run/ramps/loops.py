@@ -307,7 +307,7 @@ def find_conjugate_output(
 
 
 def variable_suffix(variable_name: str) -> str:
-    """Suffix of a variable name for the axis or the flange: `_x` of `f_x`, `2` of `tau2`; else empty."""
+    """Suffix of a variable name that states axis or flange: `_x` of `f_x`, `2` of `tau2`; else empty."""
     match = re.search(r"(_[xyz]|\d+)$", variable_name)
     return match[0] if match else ""
 

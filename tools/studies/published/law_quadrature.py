@@ -42,19 +42,19 @@ def _bodies(p: Parameters) -> tuple[float, float]:
     )
 
 
-def _sum_spots(spot_quantity: SpotFunction, count: SpotFunction, edges: Sequence[float]) -> float:
+def _sum_spots(spot_quantity: SpotFunction, spot_density: SpotFunction, edges: Sequence[float]) -> float:
     """Sum over spots: integral of spot_quantity(a) count(a) over ln a, between successive areas [m2]."""
     total = 0.0
     for low, high in pairwise(edges):
         if high > low:
             total += quad(
-                lambda t: spot_quantity(exp(t)) * count(exp(t)), log(low), log(high), **_QUADRATURE
+                lambda t: spot_quantity(exp(t)) * spot_density(exp(t)), log(low), log(high), **_QUADRATURE
             )[0]
     return total
 
 
 def _stick_sum(
-    spot_quantity: SpotFunction, x: SpotFunction, count: SpotFunction, low: float, high: float
+    spot_quantity: SpotFunction, x: SpotFunction, spot_density: SpotFunction, low: float, high: float
 ) -> float:
     """Sum of spot_quantity(a) (1 - x(a))^(1/3) for spots with x < 1; x decreases with the area."""
     if high <= low or x(high) >= 1.0:
@@ -64,7 +64,7 @@ def _stick_sum(
     def integrand(y: float) -> float:  # ln a = ln onset + y^3 removes the cube root at the onset
         """Integrand after a substitution that removes the cube root at the end of slip."""
         a = onset * exp(y**3)
-        return 3.0 * y**2 * spot_quantity(a) * max(1.0 - x(a), 0.0) ** (1.0 / 3.0) * count(a)
+        return 3.0 * y**2 * spot_quantity(a) * max(1.0 - x(a), 0.0) ** (1.0 / 3.0) * spot_density(a)
 
     return float(quad(integrand, 0.0, log(high / onset) ** (1.0 / 3.0), **_QUADRATURE)[0])
 
@@ -75,13 +75,13 @@ def _zhao2018(p: Parameters, largest: float) -> dict[str, float]:
     root = sqrt(log(p["surface.gamma"]))
     E, shear = _bodies(p)
 
-    def eq_3(psi: float) -> float:
+    def domain_extension_residual(psi: float) -> float:
         """Difference of both sides of Eq. 3 for a domain extension factor psi."""
         return psi ** (1.0 - D / 2.0) - (1.0 + psi ** (-D / 2.0)) ** ((D - 2.0) / D) - (2.0 - D) / D
 
-    psi = brentq(eq_3, 1.5, 3.0, xtol=1e-15)
+    psi = brentq(domain_extension_residual, 1.5, 3.0, xtol=1e-15)
 
-    def delta(a: float) -> float:
+    def deformation(a: float) -> float:
         """Deformation [m] of a spot of area a, Eq. 5."""
         return 2.0 ** (3.0 - D) * G ** (D - 1.0) * root * pi ** (D / 2.0 - 1.0) * a ** (1.0 - D / 2.0)
 
@@ -89,31 +89,31 @@ def _zhao2018(p: Parameters, largest: float) -> dict[str, float]:
         """Radius of curvature [m] of a spot of area a, Eq. 6."""
         return a ** (D / 2.0) / (2.0 ** (4.0 - D) * pi ** (D / 2.0) * G ** (D - 1.0) * root)
 
-    def elastic(a: float) -> float:
+    def elastic_load(a: float) -> float:
         """Elastic load [N] of a spot of area a, Eq. 7."""
-        return 4.0 / 3.0 * E * sqrt(radius(a)) * delta(a) ** 1.5
+        return 4.0 / 3.0 * E * sqrt(radius(a)) * deformation(a) ** 1.5
 
-    def excess(a: float) -> float:
+    def critical_area_residual(a: float) -> float:
         """Logarithm of the ratio of both sides of the equation for the critical area, at a spot area a.
 
         The equation depends on the parameter `critical_area`. The function is 0 at the critical area: root
         finding.
         """
         if p["critical_area"] == "continuity":
-            return log(elastic(a) / (H * a))
+            return log(elastic_load(a) / (H * a))
         strength = 0.454 + 0.41 * p["side1.nu"]
-        return log((pi * strength * H / (2.0 * E)) ** 2 * radius(a) / delta(a))
+        return log((pi * strength * H / (2.0 * E)) ** 2 * radius(a) / deformation(a))
 
     if p["critical_area"] == "printed":
         critical = 2.0 * (2.0 * E / H) ** (2.0 / (D - 1.0)) * G**2  # Eq. 4
     else:
-        critical = exp(brentq(lambda t: excess(exp(t)), -150.0, 50.0, xtol=1e-14))
+        critical = exp(brentq(lambda t: critical_area_residual(exp(t)), -150.0, 50.0, xtol=1e-14))
 
-    def count(a: float) -> float:
+    def spot_density(a: float) -> float:
         """Number of spots per unit of ln(area), a' n(a') of Eq. 2."""
         return D / 2.0 * psi ** (1.0 - D / 2.0) * (largest / a) ** (D / 2.0)
 
-    def normal(a: float) -> float:
+    def normal_stiffness(a: float) -> float:
         """Normal stiffness [N/m] of an elastic spot of area a: Eq. 13, or 2 E* r."""
         if p["spot_stiffness"] == "family":
             return 4.0 * E * (3.0 - D) / (3.0 * sqrt(2.0 * pi) * (2.0 - D)) * sqrt(a)
@@ -123,17 +123,17 @@ def _zhao2018(p: Parameters, largest: float) -> dict[str, float]:
 
     def plastic_sum(spot_quantity: SpotFunction, exponent: float) -> float:
         """Sum of a quantity over the plastic spots."""
-        return _sum_spots(spot_quantity, count, [end * exp(-_NEGLIGIBLE_LOG / exponent), end])
+        return _sum_spots(spot_quantity, spot_density, [end * exp(-_NEGLIGIBLE_LOG / exponent), end])
 
     def elastic_sum(spot_quantity: SpotFunction) -> float:
         """Sum of a quantity over the elastic spots."""
-        return _sum_spots(spot_quantity, count, [critical, largest])
+        return _sum_spots(spot_quantity, spot_density, [critical, largest])
 
-    load = plastic_sum(lambda a: H * a, 1.0 - D / 2.0) + elastic_sum(elastic)
+    load = plastic_sum(lambda a: H * a, 1.0 - D / 2.0) + elastic_sum(elastic_load)
     area = plastic_sum(lambda a: a, 1.0 - D / 2.0) + elastic_sum(lambda a: a / 2.0)
-    plastic_work = plastic_sum(lambda a: H * a * delta(a), 2.0 - D)  # Eq. 15
-    elastic_work = elastic_sum(lambda a: 8.0 / 15.0 * E * sqrt(radius(a)) * delta(a) ** 2.5)  # Eq. 17
-    K_N = elastic_sum(normal)
+    plastic_work = plastic_sum(lambda a: H * a * deformation(a), 2.0 - D)  # Eq. 15
+    elastic_work = elastic_sum(lambda a: 8.0 / 15.0 * E * sqrt(radius(a)) * deformation(a) ** 2.5)  # Eq. 17
+    K_N = elastic_sum(normal_stiffness)
     K_T = elastic_sum(lambda a: 8.0 * shear * sqrt(a / (2.0 * pi)) * (1.0 - x) ** (1.0 / 3.0))  # Eq. 21
     eta_n = plastic_work / elastic_work
     H1 = 1.0 - (1.0 - x) ** (5.0 / 3.0) - 5.0 * x / 6.0 * (1.0 + (1.0 - x) ** (2.0 / 3.0))
@@ -168,64 +168,73 @@ def _hu2023(p: Parameters, largest: float) -> dict[str, float]:
     psi = 5.454 * exp((1.0 - D) / 0.628) + 1.499
     x = p["traction_ratio"]
 
-    def count(s: float) -> float:
+    def spot_density(s: float) -> float:
         """Number of spots per unit of ln(area), s n(s) of Eq. 17."""
         return (D - 1.0) / 2.0 * psi ** (1.5 - D / 2.0) * (largest / s) ** (D / 2.0 - 0.5)
 
-    def elastic(s: float) -> float:
+    def elastic_load(s: float) -> float:
         """Elastic load [N] of a spot of area s, Eq. 9."""
         return 4.0 / 3.0 * E * (s / pi) ** 1.5 / R
 
     def load(s: float) -> float:
         """Load [N] of a spot of area s in its regime, Eqs. 9, 11, 12, 16."""
         if s <= s_ec:
-            return elastic(s)
+            return elastic_load(s)
         if s <= s1:
             return f_ec * c1 * (s / (m1 * s_ec)) ** (d1 / n1)
         return f_ec * c2 * (s / (m2 * s_ec)) ** (d2 / n2) if s <= s2 else H * s
 
-    def normal(s: float) -> float:
+    def normal_stiffness(s: float) -> float:
         """Normal stiffness [N/m] of a spot of area s in its regime, Eqs. 29, 31, 32."""
         if s <= s_ec:
             return 2.0 * E * sqrt(s / pi)
         m, n, c, d = _FIRST_STAGE if s <= s1 else _SECOND_STAGE
         return f_ec / first_yield * c * d * (s / (m * s_ec)) ** ((d - 1.0) / n)
 
-    def full_stick(s: float) -> float:
+    def full_stick_stiffness(s: float) -> float:
         """Tangential stiffness [N/m] of a spot of area s without slip."""
         return 8.0 * shear * sqrt(s / pi)
 
-    def slip(spot_load: SpotFunction) -> SpotFunction:
-        """Function of the spot area: traction ratio t/(mu f) [1] under the shear traction."""
+    def make_traction_ratio(spot_load: SpotFunction) -> SpotFunction:
+        """Traction ratio t/(mu f) [1] under the shear traction, as a function of the spot area."""
         return lambda s: p["shear_traction"] * s / (p["mu"] * spot_load(s))
 
-    def from_zero(spot_quantity: SpotFunction, exponent: float) -> float:
+    def sum_from_zero(spot_quantity: SpotFunction, exponent: float) -> float:
         """Sum of a quantity over all spots, from zero area on."""
         low = min(s_ec, largest) * exp(-_NEGLIGIBLE_LOG / (exponent + 0.5 - D / 2.0))
-        return _sum_spots(spot_quantity, count, [low, *(min(e, largest) for e in (s_ec, s1, s2)), largest])
+        return _sum_spots(
+            spot_quantity, spot_density, [low, *(min(e, largest) for e in (s_ec, s1, s2)), largest]
+        )
 
-    area = from_zero(lambda s: s, 1.0)
+    area = sum_from_zero(lambda s: s, 1.0)
     if p["reading"] == "printed":  # Eq. 30: the antiderivative at s_l, that is minus the integral beyond it
         far = largest * exp(_NEGLIGIBLE_LOG / (D / 2.0 - 1.0))
         pressure = 4.0 * E * (3.0 - D) / (3.0 * pi**1.5 * R * (4.0 - D)) * sqrt(largest)
         near = largest * exp(-_NEGLIGIBLE_LOG)
         return {
             "pressure": pressure,
-            "K_N": _sum_spots(lambda s: 2.0 * E * sqrt(s / pi), count, [largest, far]),
-            "K_T": _sum_spots(lambda s: full_stick(s) * (1.0 - x) ** (1.0 / 3.0), count, [largest, far])
+            "K_N": _sum_spots(lambda s: 2.0 * E * sqrt(s / pi), spot_density, [largest, far]),
+            "K_T": _sum_spots(
+                lambda s: full_stick_stiffness(s) * (1.0 - x) ** (1.0 / 3.0), spot_density, [largest, far]
+            )
             if p["traction"] == "ratio"
-            else _stick_sum(full_stick, slip(elastic), count, near, largest),
+            else _stick_sum(
+                full_stick_stiffness, make_traction_ratio(elastic_load), spot_density, near, largest
+            ),
             "A_r": area,
         }
     edges = [max(s_min, min(e, largest)) for e in (s_min, s_ec, s1, s2)]
     if p["traction"] == "ratio":
-        K_T = _sum_spots(lambda s: full_stick(s) * (1.0 - x) ** (1.0 / 3.0), count, edges)
+        K_T = _sum_spots(lambda s: full_stick_stiffness(s) * (1.0 - x) ** (1.0 / 3.0), spot_density, edges)
     else:
-        K_T = sum(_stick_sum(full_stick, slip(load), count, low, high) for low, high in pairwise(edges))
+        K_T = sum(
+            _stick_sum(full_stick_stiffness, make_traction_ratio(load), spot_density, low, high)
+            for low, high in pairwise(edges)
+        )
     return {
-        "pressure": from_zero(load, 1.5) / A_0,
+        "pressure": sum_from_zero(load, 1.5) / A_0,
         "largest_spot": largest,
-        "K_N": _sum_spots(normal, count, edges),
+        "K_N": _sum_spots(normal_stiffness, spot_density, edges),
         "K_T": K_T,
         "A_r": area,
     }
@@ -243,7 +252,7 @@ def _yu2022(p: Parameters, largest: float) -> dict[str, float]:
     f1, f2 = second / (first * slender), pi * sqrt(second) / (2.0 * first**1.5 * slender)  # Eqs. 22-23
     exponent = slender / 2.0 * (p["surface1.D"] + p["surface2.D"]) / 2.0  # Eqs. 42-43
 
-    def count(a: float) -> float:
+    def spot_density(a: float) -> float:
         """Number of spots per unit of ln(area): lambda times Eq. 44, times a."""
         return p["lambda"] * exponent * (largest / a) ** exponent
 
@@ -256,27 +265,27 @@ def _yu2022(p: Parameters, largest: float) -> dict[str, float]:
             curvature += 2.0 ** (4.0 - D) * pi ** (D / 2.0) * G ** (D - 1.0) * root / axis
         return 2.0 / curvature
 
-    def first_yield(a: float) -> float:
+    def yield_deformation(a: float) -> float:
         """Deformation at first yield [m] of a spot of area a, Eq. 27."""
         return first * second * radius(a) * (k * H / E) ** 2
 
-    def ratio(a: float) -> float:
+    def area_ratio(a: float) -> float:
         """Area of a spot over the area at which a spot of its curvature yields first [1]."""
-        return a / (f1 * pi * radius(a) * first_yield(a))
+        return a / (f1 * pi * radius(a) * yield_deformation(a))
 
-    def edge(limit: float) -> float:
-        """SpotFunction area [m2] at which `ratio` reaches a limit: the end of a stage."""
-        return exp(brentq(lambda t: log(ratio(exp(t)) / limit), -250.0, 250.0, xtol=1e-13))
+    def stage_end_area(limit: float) -> float:
+        """Spot area [m2] at which `area_ratio` reaches a limit: the end of a stage."""
+        return exp(brentq(lambda t: log(area_ratio(exp(t)) / limit), -250.0, 250.0, xtol=1e-13))
 
     geometric = p["plastic_area"] == "geometric"
     (m1, n1, *_), (m2, n2, *_) = _FIRST_STAGE, _SECOND_STAGE
     limits = (_FIRST_END, _SECOND_END) if geometric else (m1 * _FIRST_END**n1, m2 * _SECOND_END**n2)
-    a_nec, a_nepc, a_npc = edge(1.0), edge(limits[0]), edge(limits[1])
+    a_nec, a_nepc, a_npc = stage_end_area(1.0), stage_end_area(limits[0]), stage_end_area(limits[1])
 
     def deformation(a: float) -> tuple[float, float, float]:
-        """Deformation over that at first yield, factor and exponent of the load in the stage of a spot."""
+        """Deformation over that at first yield [1]; factor and exponent of the load in the spot's stage."""
         m, n, c, d = _FIRST_STAGE if a > a_nepc else _SECOND_STAGE
-        return (ratio(a), c, d) if geometric else ((ratio(a) / m) ** (1.0 / n), c, d)
+        return (area_ratio(a), c, d) if geometric else ((area_ratio(a) / m) ** (1.0 / n), c, d)
 
     def load(a: float) -> float:
         """Load [N] of a spot of area a in its stage."""
@@ -286,24 +295,24 @@ def _yu2022(p: Parameters, largest: float) -> dict[str, float]:
         if a > a_nec:
             return float(hertz * (a / (f1 * pi * radius(a))) ** 1.5)
         w, c, d = deformation(a)
-        return float(hertz * first_yield(a) ** 1.5 * c * w**d)
+        return float(hertz * yield_deformation(a) ** 1.5 * c * w**d)
 
-    def normal(a: float) -> float:
+    def normal_stiffness(a: float) -> float:
         """Normal stiffness [N/m] of a spot of area a in its stage."""
         if a > a_nec:
             return float(2.0 * f2 * E * sqrt(a / (f1 * pi)))
         w, c, d = deformation(a)
-        return float(f2 * 4.0 / 3.0 * E * sqrt(radius(a) * first_yield(a)) * c * d * w ** (d - 1.0))
+        return float(f2 * 4.0 / 3.0 * E * sqrt(radius(a) * yield_deformation(a)) * c * d * w ** (d - 1.0))
 
     start = min(a_npc, largest) * exp(-_NEGLIGIBLE_LOG / (1.0 - exponent))
     edges = [min(a, largest) for a in (start, a_npc, a_nepc, a_nec, largest)]
-    area = _sum_spots(lambda a: a, count, edges)
+    area = _sum_spots(lambda a: a, spot_density, edges)
     return {
-        "pressure": _sum_spots(load, count, edges) / p["A_0"],
+        "pressure": _sum_spots(load, spot_density, edges) / p["A_0"],
         "largest_spot": largest,
-        "K_N": _sum_spots(normal, count, edges[1:]),
+        "K_N": _sum_spots(normal_stiffness, spot_density, edges[1:]),
         "A_r": area,
-        "elastic_fraction": _sum_spots(lambda a: a, count, edges[3:]) / area,
+        "elastic_fraction": _sum_spots(lambda a: a, spot_density, edges[3:]) / area,
     }
 
 
@@ -358,17 +367,19 @@ def _interface_table(p: Parameters, pressure: float) -> dict[str, float]:
     K_N = p["A_0"] * p["table.factor"] * exp(CubicHermiteSpline(u, y, slopes)(inside) + below)
     mu, x, n = p["mu"], p["traction_ratio"], (y[-1] - y[0]) / (u[-1] - u[0])
 
-    def shear(force: float) -> float:
-        """Tangential displacement at a shear force, for the loss factor."""
+    def shear_displacement(force: float) -> float:
+        """Tangential displacement [m] at a shear force [N], for the loss factor."""
         return (1.0 - (1.0 - force) ** (1.0 - n)) / (1.0 - n)
 
     # Masing's loop between -x and x, at forces over mu F
-    loop = quad(lambda t: 4.0 * shear((x + t) / 2.0), -x, x, **_QUADRATURE)[0] - 4.0 * x * shear(x)
+    loop = quad(lambda t: 4.0 * shear_displacement((x + t) / 2.0), -x, x, **_QUADRATURE)[
+        0
+    ] - 4.0 * x * shear_displacement(x)
     return {
         "pressure": pressure,
         "K_N": K_N,
         "K_T": p["table.ratio"] * K_N,
-        "eta_t": -loop / (pi * x * shear(x)),
+        "eta_t": -loop / (pi * x * shear_displacement(x)),
         "friction_limit": mu * pressure * p["A_0"],
     }
 

@@ -28,8 +28,8 @@ class LawComparison:
 
     value_count        : number of reference values
     error              : relative deviation [1] with the largest magnitude
-    argument           : name and value [SI] of the argument there
-    reference, computed : values [SI] there
+    argument           : name and value [SI] of the law's argument at the largest deviation
+    reference, computed : values [SI] at this argument
     """
 
     law: str

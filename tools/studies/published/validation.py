@@ -89,7 +89,7 @@ def compare_point(
 
 
 def _point_error(point: PublishedPoint, value: float) -> float:
-    """Error of a value of a published number: relative, or in its unit."""
+    """Error of a computed or guessed value: relative [1], or absolute in the unit of the published number."""
     return (value - point.value) / (1.0 if point.absolute else abs(point.value))
 
 
@@ -241,7 +241,8 @@ def format_claim(validated_point: ValidatedPoint) -> str:
 def format_summary(validated_points: Sequence[ValidatedPoint]) -> str:
     """Summary of the comparison in one line.
 
-    It counts points by role, how often the law is nearer than the guess, and missed points.
+    It counts the points of each role, the points to which the law is nearer than a trivial guess, and the
+    missed points.
     """
     found = count_points(validated_points)
     roles = ", ".join(

@@ -19,10 +19,10 @@ MAX_RESTARTS = 3
 def run_on_cluster(
     scheduler: str, evaluator: RampEvaluator, jobs: Sequence[Sequence[Run]]
 ) -> Generator[list[Entry]]:
-    """Do runs on a dask cluster, and yield the journal entries of each job when it ends.
+    """Execute runs on a dask cluster, and yield the journal entries of each job when it ends.
 
     scheduler : address of the dask scheduler
-    jobs      : runs that a worker does at once
+    jobs      : groups of runs; a worker executes one job at a time
 
     At most JOBS_PER_WORKER jobs for each worker thread are submitted at the same time.
 
@@ -69,7 +69,7 @@ def _connect(scheduler: str) -> Iterator[Any]:
 def _submit_jobs(client: Any, key: str, jobs: Sequence[Sequence[Run]]) -> Iterator[list[Entry]]:
     """Submit jobs to a dask client, and yield the journal entries of each job when it ends.
 
-    key : key under which the workers have the evaluator
+    key : key under which the workers store the evaluator
 
     The runs of a job whose worker died are repeated at the end, one at a time with no other job on the
     cluster. So a run is recorded as the one that killed its worker only if it did.

@@ -15,7 +15,7 @@ EVALUATORS: dict[str, tuple[RampEvaluator, Path]] = {}
 
 
 def run_on_dask_worker(key: str, runs: Sequence[Run]) -> list[Entry]:
-    """Do some runs of a study on a dask worker; return their journal entries."""
+    """Execute some runs of a study on a dask worker; return their journal entries."""
     evaluator, _ = EVALUATORS[key]
     return [evaluator.run(index, settings) for index, settings in runs]
 

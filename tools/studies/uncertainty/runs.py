@@ -24,9 +24,9 @@ SinglePrecisionArray = NDArray[np.float32]
 
 @dataclass(frozen=True, slots=True)
 class Execution:
-    """Where the runs of a study are done, and where they are kept.
+    """Processes that execute the runs of a study, and the folder that stores the results.
 
-    folder    : folder of the study, see `journal.claim_folder`; None: runs are not kept
+    folder    : folder of the study, see `journal.claim_folder`; None: the results are not stored
     scheduler : address of a dask scheduler, whose workers do the runs
     workers   : number of processes on this machine, if there is no scheduler; None: one for each core
     """
@@ -70,13 +70,13 @@ def evaluate_runs(
     file_name: str = journal.RUNS_FILE,
     progress_label: str = "samples",
 ) -> SampledOutputs:
-    """Do the runs that are not yet in the folder of a study, and keep each run when it is finished.
+    """Execute the runs that the folder of a study does not contain yet, and store each finished run.
 
     runs         : settings of all runs
     output_names : outputs that are returned, of `row_count` values each
     file_name    : file of the runs in the folder
 
-    The results do not depend on the order of the runs, or on where they are done.
+    The results do not depend on the order of the runs, or on the machine that executes them.
 
     Raises ValueError if dask is missing, the scheduler does not answer or the folder cannot be used,
     RuntimeError if the workers of the scheduler cannot do any run.
@@ -132,7 +132,7 @@ def _write_to_journal(
 def _execute_runs(
     evaluator: RampEvaluator, pending_runs: Sequence[Run], execution: Execution
 ) -> Generator[Sequence[Entry]]:
-    """Do runs of a study, and yield the journal entries of each job when it ends."""
+    """Execute runs of a study, and yield the journal entries of each job when it ends."""
     size = evaluator.runs_per_job
     jobs = [pending_runs[i : i + size] for i in range(0, len(pending_runs), size)]
     if not jobs:
@@ -148,9 +148,9 @@ def _execute_runs(
 def _run_locally(
     evaluator: RampEvaluator, jobs: Sequence[Sequence[Run]], workers: int | None
 ) -> Generator[Sequence[Entry]]:
-    """Do jobs (groups of runs) on this machine, and yield the journal entries of each job when it ends.
+    """Execute jobs (groups of runs) on this machine, and yield the journal entries of each job when it ends.
 
-    jobs : runs of each job, which one process does one after the other
+    jobs : runs of each job, which one process executes one after the other
 
     If the process of a job dies, its runs are repeated one by one, to find the run that kills the process.
     """

@@ -37,11 +37,11 @@ Entry: TypeAlias = dict[str, Any]
 
 
 class RampEvaluator(Protocol):
-    """Evaluation of the runs of a study. It can be pickled.
+    """Evaluator of the runs of a study. It can be pickled.
 
-    runs_per_job     : number of runs that a worker process does at once
-    runs_per_process : number of runs for which a process is started. If there are fewer, the process of the
-        command does them; 0: it does none
+    runs_per_job     : number of runs that a worker process executes as one job
+    runs_per_process : least number of runs for each worker process that is started; with fewer runs, the
+        process of the command executes them. 0: the process of the command executes none
     """
 
     @property
@@ -61,7 +61,7 @@ class RampEvaluator(Protocol):
 
 
 def run_job(job: tuple[RampEvaluator, Path, Sequence[Run]]) -> list[Entry]:
-    """Do some runs of a study in a worker process of this machine; return their journal entries.
+    """Execute some runs of a study in a worker process of this machine; return their journal entries.
 
     job : evaluator, folder of temporary files, runs
     """
@@ -167,7 +167,7 @@ class JointRamp:
 
     @property
     def runs_per_job(self) -> int:
-        """Number of runs that a worker does at once: 1 if each run opens the joint."""
+        """Number of runs that a worker process executes as one job: 1 if each run opens the joint."""
         return 1 if self.opens_joint_per_sample else 32
 
     @property
@@ -239,7 +239,7 @@ class JointRamp:
     def _evaluate_outputs(self, sample: "_Sample", loads: Array, rows: Array) -> dict[str, Array]:
         """Outputs of the FMU at the selected loads; along a long ramp they are interpolated by splines.
 
-        A spline goes over log(load), of log(output), or of output/load if the output has zeros.
+        The splines interpolate log(output) over log(load), or output/load if the output has zeros.
         """
         name, count = self.curves.load.name, self.curves.knot_count
         loaded = loads[loads > 0.0]

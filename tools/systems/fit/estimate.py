@@ -2,8 +2,8 @@
 
 Weighted least squares over all measured columns. The first fit takes the standard deviation of the noise of a
 column from second differences of its values, the next ones from the residuals (maximum likelihood of
-independent columns). The fitted part of
-the record grows in steps, so that a wrong frequency does not lose its period.
+independent columns). The fitted part of the record grows in steps: the phase error of a wrong start frequency
+then stays below a period.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -70,7 +70,7 @@ def fit_system(
     system          : start values
     path            : record (CSV); columns are named as variables of the system, see `record`
     free            : names of the parameters, or of states of bodies, whose start values are fitted then
-    hold_out        : last share of the record [1] that is not fitted, but predicted
+    hold_out        : fraction [1] of the record, at its end, that is predicted instead of fitted
     stated_headings : see `record.read_record`
 
     Raises ValueError for bad input, RuntimeError if the fit does not converge or the compiler fails,

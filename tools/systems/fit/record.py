@@ -22,9 +22,9 @@ class Record:
     """Measured time series, in SI units.
 
     time            : (n) [s], increasing
-    inputs          : {input of the system: values (n)}, played in; the speed of a prescribed angle without a
-        column is the derivative of this angle
-    outputs         : {output of the system: values (n)}, compared
+    inputs          : {input of the system: values (n)}, prescribed in the simulation; if the speed of a
+        prescribed angle has no column, it is the derivative of this angle
+    outputs         : {output of the system: values (n)}, compared with the simulation
     unused_headings : headings of other columns
     """
 

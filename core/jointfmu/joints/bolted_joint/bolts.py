@@ -44,7 +44,10 @@ class BoltSprings:
 
     @classmethod
     def for_joint(cls, joint: AnyBoltedJoint, closure_pressure: float) -> "BoltSprings":
-        """Make the bolt springs of a joint; closure_pressure: [Pa] at which its contact touches."""
+        """Make the bolt springs of a joint.
+
+        closure_pressure : [Pa] contact pressure at zero approach; times A_0 it scales `lift_off_force`
+        """
         position = bolt_positions(joint)
         count = float(joint.n_bolts) / len(position)
         return cls(
@@ -62,7 +65,7 @@ class BoltSprings:
     def preload_force(self, joint: AnyBoltedJoint, preload: float, moment: float) -> Array:
         """Force (b) [N] of each bolt in the preload state: preload after embedding, and share of a moment.
 
-        At least 0.
+        The force is at least 0.
 
         preload : [N] assembly preload of each bolt
         moment  : [N.m] bending moment about x on the joint
@@ -102,7 +105,7 @@ class BoltSprings:
 def bolt_positions(joint: AnyBoltedJoint) -> Array:
     """Positions (b, 2) [m] of the bolts of a joint, from the centroid of its contact.
 
-    A nodal field without a list of bolts gets four positions with the means of x, y, ... that it states.
+    A nodal field without a list of bolts gets four positions with the stated means of x, y, x^2, y^2 and x y.
     """
     if isinstance(joint.bodies, ElasticBodies):
         return np.stack([joint.bodies.bolt_x, joint.bodies.bolt_y], axis=-1)

@@ -166,14 +166,14 @@ def elastic_shear(
 
         S = t u^2/(1 + R),    R = sqrt(1 + (t u/l)^2),    t = rho k.
 
-    friction_limit       : l [Pa], mu times the pressure at tightening: asymptote of the traction t u/R
-    stiffness_ratio      : K_T/K_N [1]
-    pressure_derivatives : pressure [Pa] over the approach and its first three derivatives; k is the first
-    u_x, u_y             : tangential displacement [m]
+    friction_limit       : l [Pa], mu times the pressure at tightening; the traction t u/R tends to l
+    stiffness_ratio      : rho = K_T/K_N [1]
+    pressure_derivatives : pressure p [Pa] over the approach, and its first three derivatives k, k', k''
+    u_x, u_y             : tangential displacement [m]; u is its magnitude
 
     Returns the traction along x and y [Pa], its derivatives xx, xy, yy with respect to the displacement
-    [Pa/m], and two terms by shear: in the normal traction [Pa], rho k' u^2/(R (1 + R)) <= l^2 k'/(rho k^2),
-    and in the normal stiffness [Pa/m].
+    [Pa/m], and what shear adds to the normal traction [Pa], rho k' u^2/(R (1 + R)) <= l^2 k'/(rho k^2), and
+    to the normal stiffness [Pa/m].
     """
     _, k, d2p, d3p = pressure_derivatives
     carries, touches = friction_limit > 0.0, k > 0.0

@@ -72,7 +72,7 @@ class BoltMaterial(CheckedParameters):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RigidBodies:
-    """Rigid members: the joint is the interface alone."""
+    """Choice of rigid members: only interface and bolts deform, so there are no modes."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -135,8 +135,8 @@ class HysteresisSliders(Sliders):
 
         torque, half_opening_angle : [N.m], [rad]
 
-        By Masing's rule. If the friction equals the torque of the midline at half_opening_angle, the total
-        torque is zero there: the branches of the loop are then 2 half_opening_angle apart at zero torque.
+        Masing's rule gives the friction. If it equals the torque of the midline at half_opening_angle, the
+        total torque is zero there: at zero torque the branches are then 2 half_opening_angle apart.
         """
         turn_wind_up = float(self.solve_wind_up(curve, HISTORY_LAYOUT.virgin_history(), torque))
         friction_back, friction_at_turn = self.advance(

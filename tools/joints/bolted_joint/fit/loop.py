@@ -72,7 +72,7 @@ def make_shear_loop_law(
     series_stiffness: float | None = None,
     max_displacement: float = np.inf,
 ) -> tuple[HysteresisLaw, FitFacts]:
-    """Law of the loops in shear at a preload [N] of each bolt, and facts about the joint.
+    """Make the hysteresis law in shear at a preload [N] of each bolt, and facts about the joint.
 
     series_stiffness : [N/m] of a structure in series; None: rigid. The displacement is that of joint and
                        structure together, and Masing's rule holds for both together. The facts describe the
@@ -135,8 +135,10 @@ def _first_loading_of_elastic_sides(
 ) -> tuple[Array, Array, Array]:
     """First loading along x with elastic sides: displacement (n) [m], force (n) [N], tangent stiffness [N/m].
 
-    Displacements: s = uniform_length t + graded_length t^2, t from 0 to 1 in equal steps. If the last one is
-    larger than `max_displacement` [m], all are scaled down to end there.
+    The displacements are s = a t + b t^2, with t from 0 to 1 in equal steps. If a + b exceeds
+    `max_displacement` [m], all displacements are scaled down to end there.
+
+    linear_displacement_term, quadratic_displacement_term : a [m], b [m]
     """
     fraction = np.linspace(0.0, 1.0, _ELASTIC_FIRST_LOADING_STEPS + 1)
     motion = (linear_displacement_term * fraction + quadratic_displacement_term * fraction**2) * min(
@@ -256,7 +258,7 @@ def fit(
     reach = TABLE_END_OVER_LOOP_AMPLITUDE * data.amplitude if data.kind == "loops" else np.inf
 
     def make_law(parameter_values: Mapping[str, float]) -> HysteresisLaw:
-        """Law of the loops with values of the fitted parameters."""
+        """Hysteresis law in shear of joint and structure, for values of the fitted parameters."""
         set_status_text(
             "tries " + ", ".join(f"{name} = {value:.4g}" for name, value in parameter_values.items())
         )

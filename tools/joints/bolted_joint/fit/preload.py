@@ -257,7 +257,8 @@ def _solve(
 ) -> tuple[Solution, bool]:
     """Solve the fit. Returns the solution, and whether the noise of a point is assumed.
 
-    Few points for up to two unknowns: the noise is ASSUMED_NOISE, or that of the residuals if it is larger.
+    The noise is assumed if there are at most two unknowns and few points: it is then ASSUMED_NOISE, or the
+    noise of the residuals if that is larger. Otherwise the noise follows from the residuals.
     """
     degrees_of_freedom = preload_curve.preload.size - len(unknowns)
     if len(unknowns) > 2 or degrees_of_freedom >= MIN_DEGREES_OF_FREEDOM:
@@ -276,9 +277,10 @@ def _set_modal_mass(
     modal_mass: float | None,
     series_stiffness: float | None,
 ) -> ParameterFile:
-    """Start parameters with the modal mass [kg] of the test.
+    """Set the parameter `mass` of the start parameters to the modal mass [kg] of the test, if it is stated.
 
-    Raises ValueError for a mass or a series stiffness that is not positive.
+    Raises ValueError for a mass or a series stiffness [N/m] that is not positive, and for a mass if the file
+    has stiffnesses.
     """
     for name, value, unit in (
         ("modal mass", modal_mass, "kg"),

@@ -421,7 +421,7 @@ def _interface_share_facts(
 ) -> dict[str, tuple[float, str, str]]:
     """Share of the interface in the compliance, by VDI 2230, as a fact for the user.
 
-    It is for a joint of which the FMU has the interface only.
+    Used for joints with rigid sides, whose FMU contains the interface only.
 
     interface_stiffness : [N/m] normal stiffness of the interface per bolt
     """

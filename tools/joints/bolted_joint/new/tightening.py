@@ -188,7 +188,8 @@ def _check_strength(
 
     A preload above the proof load is warned of by `common.pressure`.
 
-    Raises ValueError for a torque that hardly tightens, or at which the bolt, or the strongest bolt, yields.
+    Raises ValueError for a torque whose preload is implausibly small, or at which the bolt yields (without a
+    stated property class: the strongest bolt).
     """
     stated = options["property_class"]
     name = stated or vdi2230.STRONGEST_PROPERTY_CLASS

@@ -51,7 +51,7 @@ HYSTERESIS_STIFFNESS_STARTS_OVER_DRIVE_STIFFNESS = (0.3, 1.0, 3.0, 10.0)
 
 
 def make_law(drive: DriveParameters) -> HysteresisLaw:
-    """Law of the loops of a drive: midline and friction torque, equal to those of the FMU.
+    """Make the hysteresis law of a drive: midline and friction torque, equal to those of the FMU.
 
     Raises ValueError if the parameters allow no such hysteresis.
     """
@@ -107,7 +107,7 @@ def fit(
     file, rest = _set_start_hysteresis(start_file, names)
 
     def make_law_with_values(parameter_values: Mapping[str, float]) -> HysteresisLaw:
-        """Law of the loops with values of the fitted parameters."""
+        """Hysteresis law of the drive for values of the fitted parameters."""
         return make_law(file.with_values(parameter_values, "calibration", "fit").values)
 
     model = hysteresis_fit.build_model(data, make_law_with_values, "inertia", inertia, 0.0)

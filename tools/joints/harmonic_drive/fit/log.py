@@ -148,7 +148,7 @@ def _sensor_notes(samples: Samples) -> list[str]:
 
 
 def _fit_with_friction(
-    file: ParameterFile,
+    parameter_file: ParameterFile,
     label: str,
     samples: Samples,
     logs_with_motor_angle: Sequence[Samples],
@@ -164,26 +164,28 @@ def _fit_with_friction(
     friction_names : names of the friction parameters to fit; empty: select them
     notes          : notes so far
     """
-    if is_driven_by_friction(samples, file.values):
+    if is_driven_by_friction(samples, parameter_file.values):
         raise ValueError(
             f"{label}: friction drives the motion; reverse the sign of one column or of --torque-constant"
         )
     rotor_inertia = motor_inertia or 0.0
-    names_to_fit, selection_notes = select_parameters(samples, file.values, friction_names, rotor_inertia)
+    names_to_fit, selection_notes = select_parameters(
+        samples, parameter_file.values, friction_names, rotor_inertia
+    )
     notes = [*notes, *selection_notes]
-    fitted_log = fit_samples(file, samples, names_to_fit, rotor_inertia)
+    fitted_log = fit_samples(parameter_file, samples, names_to_fit, rotor_inertia)
     if rotor_inertia and samples.is_of_dynamic_log.any():
         _check_rotor_inertia(rotor_inertia, fitted_log)
     if not friction_names:
         fitted_log, names_to_fit, dropped = refit_without_undetermined(
-            file, samples, fitted_log, names_to_fit
+            parameter_file, samples, fitted_log, names_to_fit
         )
         notes += dropped
     if samples.is_of_dynamic_log.any() and motor_inertia is None and not samples.has_sensor:
         if logs_with_motor_angle and (
-            rotor_fit := _fit_rotor_inertia(file, logs_with_motor_angle[0], fitted_log)
+            rotor_fit := _fit_rotor_inertia(parameter_file, logs_with_motor_angle[0], fitted_log)
         ):
-            fitted_log = fit_with_rotor_inertia(file, samples, names_to_fit, *rotor_fit)
+            fitted_log = fit_with_rotor_inertia(parameter_file, samples, names_to_fit, *rotor_fit)
         else:
             notes.append(
                 "without --motor-inertia the rotor counts as part of the arm: load_loss and the stiffness "
@@ -193,9 +195,9 @@ def _fit_with_friction(
     if harmonics:
         rotor, deviation = fitted_log.rotor_inertia, fitted_log.rotor_inertia_deviation
         fitted_log = (
-            fit_with_rotor_inertia(file, samples, names_to_fit, rotor, deviation)
+            fit_with_rotor_inertia(parameter_file, samples, names_to_fit, rotor, deviation)
             if deviation > 0.0
-            else fit_samples(file, samples, names_to_fit, rotor)
+            else fit_samples(parameter_file, samples, names_to_fit, rotor)
         )
     fitted_log, vanishing_notes = accept_vanishing(fitted_log)
     notes += vanishing_notes
@@ -207,7 +209,9 @@ def _fit_with_friction(
     solution, drawn_pictures = fitted_log.solution, [*draw_pictures(samples, fitted_log)]
     intervals = _confidence_intervals(fitted_log.solution)
     if logs_with_motor_angle:
-        stiffness_fit, link_notes = _fit_stiffness(file, logs_with_motor_angle[0], fitted_log, fitted_names)
+        stiffness_fit, link_notes = _fit_stiffness(
+            parameter_file, logs_with_motor_angle[0], fitted_log, fitted_names
+        )
         notes += link_notes
         if stiffness_fit is not None:
             solution = _combine_solutions(solution, stiffness_fit[0])
@@ -215,10 +219,10 @@ def _fit_with_friction(
             intervals |= _confidence_intervals(stiffness_fit[0])
     doubts = (
         doubt_about_gravity(samples),
-        doubt_about_friction(samples, fitted_log, file.values, torque_constant),
+        doubt_about_friction(samples, fitted_log, parameter_file.values, torque_constant),
     )
     result, ripple_facts, ripple_notes = add_ripples(
-        _fitted_file(file, label, samples, solution, intervals),
+        _fitted_file(parameter_file, label, samples, solution, intervals),
         fitted_ripples(fitted_log, harmonics),
         f"fitted to {label}, {_describe_ranges(samples)}",
         CONFIDENCE_LEVEL,
@@ -226,7 +230,7 @@ def _fit_with_friction(
     return FitResult(
         result,
         solution,
-        ripple_facts | fit_facts(file, samples, fitted_log, names_to_fit),
+        ripple_facts | fit_facts(parameter_file, samples, fitted_log, names_to_fit),
         drawn_pictures,
         notes=[*notes, *ripple_notes],
         confidence_intervals=intervals,
@@ -235,14 +239,14 @@ def _fit_with_friction(
 
 
 def _fit_without_friction(
-    file: ParameterFile,
+    parameter_file: ParameterFile,
     label: str,
     samples: Samples,
     logs_with_motor_angle: Sequence[Samples],
     fitted_names: Sequence[str] | None,
     friction_names: Sequence[str],
 ) -> FitResult:
-    """Fit a log with the torque behind the drive: load of the joint, and stiffness if q_motor is measured.
+    """Fit a log whose torque is measured at the joint: load, and stiffness if the motor angle is measured.
 
     Raises ValueError if the user wants to fit a friction parameter.
     """
@@ -257,7 +261,9 @@ def _fit_without_friction(
     ]
     solution, pictures, intervals = EMPTY_SOLUTION, [_load_picture(samples)], {}
     if logs_with_motor_angle:
-        stiffness_fit, more_notes = _fit_stiffness(file, logs_with_motor_angle[0], None, fitted_names)
+        stiffness_fit, more_notes = _fit_stiffness(
+            parameter_file, logs_with_motor_angle[0], None, fitted_names
+        )
         notes += more_notes
         if stiffness_fit is not None:
             solution, intervals = stiffness_fit[0], _confidence_intervals(stiffness_fit[0])
@@ -269,7 +275,7 @@ def _fit_without_friction(
             "the angle of the motor (q_motor) is needed"
         )
     return FitResult(
-        _fitted_file(file, label, samples, solution, intervals),
+        _fitted_file(parameter_file, label, samples, solution, intervals),
         solution,
         load_facts(samples),
         pictures,
@@ -279,14 +285,16 @@ def _fit_without_friction(
 
 
 def _fitted_file(
-    file: ParameterFile,
+    parameter_file: ParameterFile,
     label: str,
     samples: Samples,
     solution: Solution,
     intervals: Mapping[str, tuple[float, float]],
 ) -> ParameterFile:
     """Parameter file with the fitted values; their sources state the intervals."""
-    result = fitted_parameters(file, solution.values, "calibration", label, _describe_ranges(samples))
+    result = fitted_parameters(
+        parameter_file, solution.values, "calibration", label, _describe_ranges(samples)
+    )
     for name, value in solution.values.items():
         kind, text = "estimate", "not determined: other values fit as well"
         if name in intervals:
@@ -421,9 +429,9 @@ def _start_parameters(
 
 
 def _catalogue_drive(drive_name: str, ratio: float | None) -> ParameterFile:
-    """Parameters of a drive of the catalogue; a stated ratio selects the row of this ratio.
+    """Parameters of a drive of the catalogue; a stated ratio selects the drive of this ratio.
 
-    A ratio that is larger by 1 than that of the row means that the flexspline is fixed.
+    A stated ratio that is the catalogue's ratio plus 1 means that the flexspline is fixed.
     """
     options = dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.options) | {"catalogue": drive_name}
     if ratio is not None:

@@ -31,8 +31,8 @@ class LinearTorqueTerms:
     """Terms of the motor torque that are linear in their unknowns: inertia, offset, gravity.
 
     design_matrix    : (n, k) motor torque at the samples per unit of each unknown
-    measured_load    : (n) [N.m] motor torque for the torque sensor, or else for the measured gravity; 0 if
-                       neither is measured
+    measured_load    : (n) [N.m] motor torque that balances the torque of the sensor at the joint, or else the
+                       measured gravity; 0 if neither is measured
     unknown_names    : names (k) of the unknowns
     """
 
@@ -403,7 +403,7 @@ def accept_vanishing(fitted_log: FittedLogFriction) -> tuple[FittedLogFriction, 
 
 
 def has_friction(samples: Samples, drive: DriveParameters) -> bool:
-    """Whether the motor torque in samples has a friction part, above chance and MIN_FRICTION_SHARE."""
+    """Whether samples show friction: a share of the motor torque above chance and MIN_FRICTION_SHARE."""
     ratio = abs(drive.ratio)
     terms, linear = _fit_linear_model(samples, drive)
     sense, speed = np.sign(samples.dq), ratio * samples.dq

@@ -83,7 +83,10 @@ def _harmonic_terms(samples: Samples, harmonic: int, ratio: float) -> Array:
 
 
 def fitted_ripples(fitted_log: FittedLogFriction, harmonics: Sequence[int]) -> list[Ripple]:
-    """Ripples of the friction from a fit with ripple terms, which are its last linear unknowns."""
+    """Amplitude and phase of each harmonic of the friction, with deviations, from a fit with ripple terms.
+
+    The last linear unknowns of the fit are the amplitudes of sine and cosine of each harmonic.
+    """
     ripples, first = [], fitted_log.linear_unknowns.size - 2 * len(harmonics)
     for number, harmonic in enumerate(harmonics):
         place = slice(first + 2 * number, first + 2 * number + 2)
