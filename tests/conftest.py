@@ -260,12 +260,15 @@ def made_once(factory: pytest.TempPathFactory, name: str, make: Callable[[Path],
 def here_alone(versions: str = "23") -> Iterator[None]:
     """Build FMUs for this machine only; the fixture `native` has all platforms.
 
-    What is kept for all of them is taken from there; what else is compiled is kept apart.
+    What is kept for all of them is taken from there; what else is compiled is kept apart. Commands build in
+    this process, because worker processes would build for all platforms.
 
     versions : versions of FMI that are compiled
     """
     from jointfmu_fmu_src.native.compiled import compiled_models
     from jointfmu_tools.systems.fmu import build as system
+
+    from jointfmu import progress
 
     places, read = compiled_models._candidate_paths, compiled_models.unpack_model
 
@@ -292,6 +295,7 @@ def here_alone(versions: str = "23") -> Iterator[None]:
         patch.setattr(compiled_models, "unpack_model", read_here)
         patch.setattr(compiled_models, "compile_libraries", libraries_here)
         patch.setattr(system, "compile_libraries", libraries_here)
+        patch.setattr(progress._WorkerPool, "map", staticmethod(map))
         yield
 
 
