@@ -261,11 +261,15 @@ def here_alone(versions: str = "23") -> Iterator[None]:
     """Build FMUs for this machine only; the fixture `native` has all platforms.
 
     Models that are compiled for all platforms are read from the cache. Models that are compiled here, for one
-    platform, have a cache folder of their own.
+    platform, have a cache folder of their own. Commands build in this process, because worker processes
+    would build for all platforms.
+
     versions : versions of FMI that are compiled
     """
     from jointfmu_fmu_src.native.compiled import compiled_models
     from jointfmu_tools.systems.fmu import build as system
+
+    from jointfmu import progress
 
     places, read = compiled_models._candidate_paths, compiled_models.unpack_model
 
@@ -292,6 +296,7 @@ def here_alone(versions: str = "23") -> Iterator[None]:
         patch.setattr(compiled_models, "unpack_model", read_here)
         patch.setattr(compiled_models, "compile_libraries", libraries_here)
         patch.setattr(system, "compile_libraries", libraries_here)
+        patch.setattr(progress._WorkerPool, "map", staticmethod(map))
         yield
 
 

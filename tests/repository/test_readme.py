@@ -80,7 +80,9 @@ def test_every_block_of_the_readme_runs_top_to_bottom(tmp_path, few_points, ente
 def folder(tmp_path_factory, native):
     place = tmp_path_factory.mktemp("readme")
     shutil.copytree(native, place / "dist", ignore=shutil.ignore_patterns(".*"))
-    native_build("RotationalInertia", partner_parameters("RotationalInertia"), place / "dist" / "fmi2", "2")
+    inertia = partner_parameters("RotationalInertia")
+    with here_alone():
+        native_build("RotationalInertia", inertia, place / "dist" / "fmi2", "2")
     specimen = (ROOT / "models/bolted_joint/box_specimen.toml").read_text()
     write_parameter_text(place / "my_joint.toml", specimen)  # as a command that the page does not show
     (place / "models/assemblies").mkdir(parents=True)

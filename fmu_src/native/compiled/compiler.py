@@ -1,6 +1,7 @@
 """Compile C to shared libraries for five platforms on any machine, with zig (package ziglang of PyPI)."""
 
 import os
+import re
 import struct
 import subprocess
 import sys
@@ -40,6 +41,8 @@ _WEBASSEMBLY_OPTIONS = (
 )  # fmt: skip
 """Options for WebAssembly: a reactor module that needs only the imports declared in the sources. Visible
 functions are exported; the host calls `_initialize` first. Stack of 128 kB, by default zig reserves 16 MB."""
+_INCLUDE_PATTERN = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.M)
+"""Pattern of a line of C that includes a file of the same folder; its group is the name."""
 _UCRT_LIBRARIES = ("convert", "heap", "math", "private", "runtime", "stdio", "string", "utility")
 """Libraries of the Universal C Runtime, which is part of Windows 10 and newer."""
 
@@ -59,7 +62,8 @@ def compile_libraries(
     library_stem   : file name of the libraries without extension; empty: `fmu_name`
     linker_options : compiler options that link a further library
 
-    zig caches compiled units, also for later builds. Equal sources give equal bytes.
+    zig caches each compiled C file, also for other libraries and later builds. Equal sources give equal
+    bytes.
 
     Raises ImportError if ziglang is missing, ValueError if its cache cannot be written or others may write to
     it, RuntimeError with the compiler's first error.
@@ -68,9 +72,8 @@ def compile_libraries(
 
     options = {platform: _compiler_options(platform, library_stem or fmu_name) for platform in platforms}
     windows = Path(__file__).with_name("windows.c")
-    folder = _write_source_folder(
-        {**_read_fmi_headers(), windows.name: windows.read_text(encoding="utf-8"), **sources}
-    )
+    folder = _write_source_folder({windows.name: windows.read_text(encoding="utf-8")})
+    paths = _write_source_files({**_read_fmi_headers(), **sources}, source_names)
 
     def compile_library(platform: str) -> bytes:
         """Compile the library of one platform and return its bytes."""
@@ -81,7 +84,7 @@ def compile_libraries(
                 folder,
                 "cc",
                 *options[platform],
-                *source_names,
+                *paths,
                 *linker_options,
                 "-o",
                 str(file),
@@ -101,15 +104,15 @@ def select_source_files(source_names: Iterable[str], fmi_version: str) -> list[s
 def compile_webassembly(module_name: str, sources: Mapping[str, str], source_names: Sequence[str]) -> bytes:
     """Compile C files to a WebAssembly reactor module; errors as `compile_libraries`."""
     import_module("ziglang")
-    folder = _write_source_folder({**_read_fmi_headers(), **sources})
+    paths = _write_source_files({**_read_fmi_headers(), **sources}, source_names)
     with tempfile.TemporaryDirectory() as out:
         file = Path(out) / f"{module_name}.wasm"
         _run_zig(
             f"{module_name} for WebAssembly",
-            folder,
+            Path(out),
             "cc",
             *_WEBASSEMBLY_OPTIONS,
-            *source_names,
+            *paths,
             "-o",
             str(file),
         )
@@ -172,6 +175,28 @@ def _read_fmi_headers() -> dict[str, str]:
 
     folder = Path(fmpy.__file__).parent / "c-code"
     return {p.name: p.read_text(encoding="utf-8") for p in sorted(folder.glob("fmi[23]*.h"))}
+
+
+def _write_source_files(files: Mapping[str, str], source_names: Sequence[str]) -> list[str]:
+    """Write C files, each with the files that it includes, into cache folders; returns their paths.
+
+    Libraries share the folders of equal files, so zig compiles a C file only if it, or a file that it
+    includes, has changed.
+    """
+    folders = [_write_source_folder(_select_included_files(files, name)) for name in source_names]
+    return [str(folder / name) for folder, name in zip(folders, source_names, strict=True)]
+
+
+def _select_included_files(files: Mapping[str, str], source_name: str) -> dict[str, str]:
+    """{name: text} of a C file and of all files that it includes, directly or through others."""
+    selected: dict[str, str] = {}
+    pending = [source_name]
+    while pending:
+        name = pending.pop()
+        if name in files and name not in selected:
+            selected[name] = files[name]
+            pending += _INCLUDE_PATTERN.findall(files[name])
+    return selected
 
 
 def _write_source_folder(files: Mapping[str, str]) -> Path:
