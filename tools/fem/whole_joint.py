@@ -18,17 +18,16 @@ from jointfmu.quantity import Array
 
 from .bolted_contact import compute_bolt_head_loads, make_elastic_body
 from .contact import ContactInterface, displacement_matrix
-from .elasticity import Cholesky, ElasticBody, IndexArray
+from .elasticity import ElasticBody, IndexArray
 from .geometry import Assembly
 from .mesh import contact_mesh, find_contact_cells
+from .symmetric_factorisation import SymmetricFactorisation, find_reflections
 from .symmetric_plan import first_size_at_heads, mesh_symmetric_plan
 
 COORDINATE_AXES = (0, 1, 2)
 """Indices of the axes x, y, z."""
 MIRROR_SIGNS = np.array([1.0, 1.0, -1.0])
 """Factors of x, y, z for the mirror image in the contact plane."""
-ROUND_OFF_OVER_LARGEST_LOAD = 1e-14
-"""Part of a load over the largest load [1] below which the part is round-off."""
 FACE_TOLERANCE = 1e-6
 """Distance of a node from a face over the size of the body [1], below which the node lies on the face."""
 
@@ -181,7 +180,7 @@ class JointFiniteElements:
 
     def _solve_unit_motions(
         self, body_matrix: sp.csr_matrix, connection_matrix: sp.csr_matrix
-    ) -> tuple[Array, Array, IndexArray, "Cholesky | MirrorFactorisation"]:
+    ) -> tuple[Array, Array, IndexArray, SymmetricFactorisation]:
         """Solve for unit translations and rotations of side 2's attachment about the centroid of the contact.
 
         body_matrix, connection_matrix : stiffness (n, n) [N/m] of the bodies; of interface and bolts
@@ -200,16 +199,8 @@ class JointFiniteElements:
         free = np.setdiff1d(np.arange(rigid.shape[0]), prescribed)
         displacement = np.zeros_like(rigid)
         displacement[prescribed] = rigid[prescribed]
-        if self.is_mirrored:
-            free1, free2 = np.split(free, 2)
-            connection = connection_matrix[free2]
-            factor: Cholesky | MirrorFactorisation = MirrorFactorisation(
-                body_matrix[free2][:, free2] + connection[:, free2],
-                connection[:, free1],
-                MIRROR_SIGNS[free1 % 3],
-            )
-        else:
-            factor = Cholesky((body_matrix + connection_matrix)[free][:, free])
+        matrix = (body_matrix + connection_matrix)[free][:, free]
+        factor = SymmetricFactorisation(matrix, find_reflections(matrix, self.bodies, free))
         loads = body_matrix @ displacement + connection_matrix @ displacement
         displacement[free] = -factor.solve(loads[free])
         return displacement, rigid, free, factor
@@ -222,50 +213,6 @@ def _block_diagonal(first_matrix: sp.csr_matrix, second_matrix: sp.csr_matrix) -
     starts = np.concatenate([first_matrix.indptr, second_matrix.indptr[1:] + first_matrix.nnz])
     data = np.concatenate([first_matrix.data, second_matrix.data])
     return sp.csr_matrix((data, indices, starts), shape=(size + second_matrix.shape[0],) * 2)
-
-
-class MirrorFactorisation:
-    """Factorisation of the stiffness (2 n, 2 n) of two bodies that are mirror images of each other.
-
-    Symmetric and antisymmetric displacements decouple: each has its own matrix (n, n).
-
-    diagonal_block : (n, n) stiffness of the second body, with what connects it to the first
-    coupling_block : (n, n) stiffness that couples the second body (rows) to the first (columns)
-    mirror_signs   : (n) sign of each unknown of the first body in the mirror image
-    """
-
-    def __init__(
-        self, diagonal_block: sp.csr_matrix, coupling_block: sp.csr_matrix, mirror_signs: Array
-    ) -> None:
-        coupling = coupling_block @ sp.diags(mirror_signs)
-        self._mirror = mirror_signs
-        self._symmetric, self._antisymmetric = (
-            Cholesky(diagonal_block + coupling),
-            Cholesky(diagonal_block - coupling),
-        )
-
-    def solve(self, right_side: Array) -> Array:
-        """Solve `matrix @ x = right_side` for x (2 n, k), with the matrix of both bodies."""
-        first, second = np.split(right_side, 2)
-        first = self._mirror[:, None] * first
-        smallest = ROUND_OFF_OVER_LARGEST_LOAD * np.max(np.abs(right_side), axis=0)
-        symmetric = _solve_columns(self._symmetric, 0.5 * (second + first), smallest)
-        antisymmetric = _solve_columns(self._antisymmetric, 0.5 * (second - first), smallest)
-        return np.concatenate(
-            [self._mirror[:, None] * (symmetric - antisymmetric), symmetric + antisymmetric]
-        )
-
-
-def _solve_columns(factor: Cholesky, right_sides: Array, smallest: Array) -> Array:
-    """Solve for x (n, k) with right-hand sides (n, k). Columns with no value above `smallest` (k) give 0.
-
-    Most loads of a mirrored joint are symmetric or antisymmetric: half of their columns are round-off.
-    """
-    out = np.zeros_like(right_sides)
-    columns = np.max(np.abs(right_sides), axis=0) > smallest
-    if np.any(columns):
-        out[:, columns] = factor.solve(right_sides[:, columns])
-    return out
 
 
 @dataclass(frozen=True)
@@ -289,7 +236,7 @@ class LinearJoint:
     unit_motion_displacement: Array
     rigid_displacement: Array
     free_unknowns: IndexArray
-    stiffness_factor: Cholesky | MirrorFactorisation
+    stiffness_factor: SymmetricFactorisation
 
     def solve(self, loads: Array) -> Array:
         """Displacements (n, s) [m] of the bodies in s load cases (n, s) [N], with both attachments fixed."""

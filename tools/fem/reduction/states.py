@@ -20,7 +20,7 @@ from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import working_preload
 from jointfmu.quantity import Array
 
-from ..elasticity import Cholesky
+from ..symmetric_factorisation import SymmetricFactorisation, find_reflections
 from ..whole_joint import COORDINATE_AXES, MIRROR_SIGNS, JointFiniteElements, LinearJoint
 from .patch_work import MIN_DISPLACEMENT
 
@@ -120,7 +120,9 @@ def _solve_body(
     """
     stiffness, fixed_unknowns = joint.stiffness_matrices[body], joint.attachment_unknowns[body]
     free = np.setdiff1d(np.arange(len(displacement)), fixed_unknowns)
-    displacement[free] = Cholesky(stiffness[free][:, free]).solve(unit_loads[:, free].T.tocsc())
+    matrix = stiffness[free][:, free]
+    reflections = find_reflections(matrix, [joint.bodies[body]], free)
+    displacement[free] = SymmetricFactorisation(matrix, reflections).solve(unit_loads[:, free].T.tocsc())
 
 
 def averaging_matrix(
