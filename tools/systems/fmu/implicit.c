@@ -1,7 +1,8 @@
 /* Implicit steps of a system of bodies: collocation at start, middle and end of a step (Lobatto IIIA of order 4: Hairer
  * and Wanner, Solving Ordinary Differential Equations II, IV.5), symmetric and A-stable. Newton's method uses the exact
- * tangents of the joints. Every step is computed as one step and as two half steps. Their difference estimates the
- * error, which controls the step size. The history variables of the joints advance with the half steps. */
+ * tangents of the joints. Every step consists of two half steps. The same accelerations, integrated by the formula of
+ * one whole step, give other speeds and positions; the difference estimates the error, which controls the step size.
+ * The history variables of the joints advance with the half steps. */
 #include <math.h>
 #include <string.h>
 
@@ -13,14 +14,13 @@
  * MIN_TOLERANCE. */
 #define MIN_TOLERANCE 1e-10
 #define NEWTON_TOLERANCE_RATIO 1e-2    /* residual correction of Newton's method over the tolerance */
-#define WHOLE_STEP_TOLERANCE_RATIO 1.0 /* the same for a whole step, whose error may be 15 tolerances */
 #define MIN_SPEED_RATIO 1e-6           /* smallest `speed_scale` over the nominal speed */
 #define MIN_STEP_RATIO 1e-9            /* smallest step over the communication step */
 #define MAX_STEPS 100000               /* attempts in one communication step */
 #define TANGENT_REUSE_RATIO 0.3        /* largest ratio of successive corrections with which tangents are reused */
 #define MAX_STEP_GROWTH 4.0            /* largest ratio of successive step sizes */
 #define BACKWARD_STEP_RATIO 1e-6       /* see `set_end_history`: part of the last half step */
-enum { MAX_ITERATIONS = 12, MIDDLE = 0, END = 1, X = FIRST_OUTPUT, V = X + N_BODIES, A = V + N_BODIES };
+enum { MAX_ITERATIONS = 12, MIDDLE = 0, END = 1, RE = 0, IM = 1, X = FIRST_OUTPUT, V = X + N_BODIES, A = V + N_BODIES };
 
 /* Weights of the accelerations at start, middle and end of a step of size 1, in the speeds and in the positions at
  * middle and end. */
@@ -28,19 +28,23 @@ static const double SPEED_WEIGHTS[2][3] = {{5.0 / 24.0, 1.0 / 3.0, -1.0 / 24.0},
 static const double POSITION_WEIGHTS[2][3] = {{1.0 / 16.0, 1.0 / 12.0, -1.0 / 48.0}, {1.0 / 6.0, 1.0 / 3.0, 0.0}};
 static const double STAGE_TIMES[2] = {0.5, 1.0};
 
-/* Step to compute: positions, speeds and accelerations at its start, history and time there, size. A whole step is only
- * used for the error estimate. */
+/* Eigenvalue of the speed weights of middle and end, and its square, which is that of the position weights; real and
+ * imaginary part. The other eigenvalue is the conjugate one. */
+#define SQRT_3 1.7320508075688772
+static const double EIGENVALUE[2] = {0.25, 0.25 / SQRT_3}, SQUARED_EIGENVALUE[2] = {1.0 / 24.0, 0.125 / SQRT_3};
+
+/* Half step to compute: positions, speeds and accelerations at its start, history and time there, size; accelerations
+ * (at middle, then at end) that are corrected from a first guess. */
 typedef struct {
     const double *start, *history;
-    double time, size;
-    bool is_whole_step;
+    double time, size, *accelerations;
 } TrialStep;
 
 /* Set time, inputs, positions and speeds at a stage from the present accelerations. */
 static void set_stage_values(Instance *m, const TrialStep *s, size_t stage)
 {
     StepWork *w = &m->joint->work;
-    const double h = s->size, *p = POSITION_WEIGHTS[stage], *q = SPEED_WEIGHTS[stage], *k = w->accelerations;
+    const double h = s->size, *p = POSITION_WEIGHTS[stage], *q = SPEED_WEIGHTS[stage], *k = s->accelerations;
     double *values = w->stage_values[stage];
     values[0] = s->time + STAGE_TIMES[stage] * h;
     for (size_t i = FIRST_INPUT; i < FIRST_OUTPUT; i++)
@@ -78,97 +82,139 @@ static void update_tangents(Instance *m, const TrialStep *s)
         w->seed[N_INPUTS + j] = 1.0;
         joint_derivative(m->joint, w->stage_values[END] + FIRST_INPUT, s->history, NULL, w->seed, w->sensitivity);
         for (size_t i = 0; i < N_BODIES; i++)
-            w->acceleration_tangents[i][j] = w->sensitivity[2 * N_BODIES + i];
+            w->acceleration_tangents[j][i] = w->sensitivity[2 * N_BODIES + i];
+        if (j < N_BODIES)
+            w->frequency[j] = sqrt(fabs(w->acceleration_tangents[j][j]));
     }
 }
 
-/* Matrix of Newton's method for a step of size h, with the same tangents at both stages. */
+/* Matrix of Newton's method for a step of size h, with the same tangents at both stages. The eigenvectors of the
+ * weights decouple the stages, so it is complex and has one row for each body; columns are stored one after another. */
 static void assemble(StepWork *w, double h)
 {
-    for (size_t stage = MIDDLE; stage <= END; stage++)
-        for (size_t r = MIDDLE; r <= END; r++) {
-            const double position_weight = h * h * POSITION_WEIGHTS[stage][1 + r],
-                         speed_weight = h * SPEED_WEIGHTS[stage][1 + r];
+    for (size_t part = RE; part <= IM; part++) {
+        const double position_weight = h * h * SQUARED_EIGENVALUE[part], speed_weight = h * EIGENVALUE[part];
+        for (size_t j = 0; j < N_BODIES; j++) {
             for (size_t i = 0; i < N_BODIES; i++)
-                for (size_t j = 0; j < N_BODIES; j++)
-                    w->matrix[stage * N_BODIES + i][r * N_BODIES + j] =
-                        (i == j && r == stage) - position_weight * w->acceleration_tangents[i][j] -
-                        speed_weight * w->acceleration_tangents[i][N_BODIES + j];
+                w->matrix[part][j][i] = -position_weight * w->acceleration_tangents[j][i] -
+                                        speed_weight * w->acceleration_tangents[N_BODIES + j][i];
+            w->matrix[part][j][j] += part == RE;
         }
+    }
 }
 
-/* LU decomposition of the matrix in place, with partial pivoting. */
+/* Subtract from column b the multiple of column a by element k of b, in the rows from `first` up to `end`. */
+static inline void eliminate(const double *restrict a_re, const double *restrict a_im, double *restrict b_re,
+                             double *restrict b_im, size_t k, size_t first, size_t end)
+{
+    const double re = b_re[k], im = b_im[k];
+    for (size_t i = first; i < end; i++) {
+        b_re[i] -= a_re[i] * re - a_im[i] * im;
+        b_im[i] -= a_re[i] * im + a_im[i] * re;
+    }
+}
+
+static inline void swap(double *x, size_t i, size_t k)
+{
+    const double other = x[i];
+    x[i] = x[k];
+    x[k] = other;
+}
+
+static inline void multiply(double *re, double *im, double factor_re, double factor_im)
+{
+    const double product = *re * factor_re - *im * factor_im;
+    *im = *re * factor_im + *im * factor_re;
+    *re = product;
+}
+
+/* LU decomposition of the matrix in place, with partial pivoting; the diagonal of U is inverted. */
 static bool factorize(StepWork *w)
 {
-    for (size_t k = 0; k < N_STATES; k++) {
+    double(*re)[N_BODIES] = w->matrix[RE], (*im)[N_BODIES] = w->matrix[IM];
+    for (size_t k = 0; k < N_BODIES; k++) {
         size_t best = k;
-        for (size_t i = k + 1; i < N_STATES; i++)
-            if (fabs(w->matrix[i][k]) > fabs(w->matrix[best][k]))
+        for (size_t i = k + 1; i < N_BODIES; i++)
+            if (fabs(re[k][i]) + fabs(im[k][i]) > fabs(re[k][best]) + fabs(im[k][best]))
                 best = i;
         w->pivot[k] = (unsigned short)best;
-        for (size_t j = 0; j < N_STATES && best != k; j++) {
-            const double other = w->matrix[k][j];
-            w->matrix[k][j] = w->matrix[best][j];
-            w->matrix[best][j] = other;
+        for (size_t j = 0; j < N_BODIES && best != k; j++) {
+            swap(re[j], best, k);
+            swap(im[j], best, k);
         }
-        const double pivot = w->matrix[k][k];
-        if (!(fabs(pivot) > 0.0 && fabs(pivot) < INFINITY))
+        const double square = re[k][k] * re[k][k] + im[k][k] * im[k][k];
+        if (!(square > 0.0 && square < INFINITY))
             return false;
-        const double *restrict pivot_row = w->matrix[k];
-        for (size_t i = k + 1; i < N_STATES; i++) {
-            double *restrict row = w->matrix[i];
-            const double factor = row[k] /= pivot;
-            if (factor == 0.0)
-                continue;
-            for (size_t j = k + 1; j < N_STATES; j++)
-                row[j] -= factor * pivot_row[j];
-        }
+        re[k][k] /= square;
+        im[k][k] /= -square;
+        for (size_t i = k + 1; i < N_BODIES; i++)
+            multiply(&re[k][i], &im[k][i], re[k][k], im[k][k]);
+        for (size_t j = k + 1; j < N_BODIES; j++)
+            eliminate(re[k], im[k], re[j], im[j], k, k + 1, N_BODIES);
     }
     return true;
 }
 
-/* Solve the linear system; `residual` is the right side, and then the solution. */
+/* Solve the linear system: `residual` has the right sides at middle and end, and then the corrections there. */
 static void solve(StepWork *w)
 {
-    double *b = w->residual;
-    for (size_t k = 0; k < N_STATES; k++) {
-        const double other = b[w->pivot[k]];
-        b[w->pivot[k]] = b[k];
-        b[k] = other;
+    double *middle = w->residual, *end = w->residual + N_BODIES, re[N_BODIES], im[N_BODIES];
+    for (size_t i = 0; i < N_BODIES; i++) {
+        re[i] = middle[i] - 0.125 * end[i];
+        im[i] = 0.125 * SQRT_3 * end[i];
     }
-    for (size_t i = 0; i < N_STATES; i++)
-        for (size_t j = 0; j < i; j++)
-            b[i] -= w->matrix[i][j] * b[j];
-    for (size_t i = N_STATES; i-- > 0;) {
-        for (size_t j = i + 1; j < N_STATES; j++)
-            b[i] -= w->matrix[i][j] * b[j];
-        b[i] /= w->matrix[i][i];
+    for (size_t k = 0; k < N_BODIES; k++) {
+        swap(re, w->pivot[k], k);
+        swap(im, w->pivot[k], k);
+    }
+    for (size_t k = 0; k < N_BODIES; k++)
+        eliminate(w->matrix[RE][k], w->matrix[IM][k], re, im, k, k + 1, N_BODIES);
+    for (size_t k = N_BODIES; k-- > 0;) {
+        multiply(&re[k], &im[k], w->matrix[RE][k][k], w->matrix[IM][k][k]);
+        eliminate(w->matrix[RE][k], w->matrix[IM][k], re, im, k, 0, k);
+    }
+    for (size_t i = 0; i < N_BODIES; i++) {
+        middle[i] = re[i] + im[i] / SQRT_3;
+        end[i] = 8.0 / SQRT_3 * im[i];
     }
 }
 
 /* First guess of the accelerations at middle and end of a half step, by the parabola through those at start, middle and
- * end of the whole step; `middle` and `end` are their times over the size of the whole step. */
-static void predict_accelerations(StepWork *w, const double *start, const double *stage_accelerations, double middle,
-                                  double end)
+ * end of another half step (`known`); `middle` and `end` are times since its start over its size. */
+static void predict_accelerations(const double known[3][N_BODIES], double middle, double end, double *guess)
 {
-    const double times[2] = {middle, end};
-    for (size_t stage = MIDDLE; stage <= END; stage++)
-        for (size_t i = 0; i < N_BODIES; i++) {
-            const double c = times[stage], a = start[2 * N_BODIES + i];
-            const double last = stage_accelerations[N_BODIES + i] - a,
-                         first = 4.0 * (stage_accelerations[i] - a) - last;
-            w->accelerations[stage * N_BODIES + i] = a + c * (first + c * (last - first));
-        }
+    for (size_t i = 0; i < N_BODIES; i++) {
+        const double a = known[0][i], last = known[2][i] - a, first = 4.0 * (known[1][i] - a) - last;
+        guess[i] = a + middle * (first + middle * (last - first));
+        guess[N_BODIES + i] = a + end * (first + end * (last - first));
+    }
 }
 
-/* Compute a step by Newton's method from a first guess: positions, speeds and accelerations `to` at its end, and the
- * history there; of a whole step positions and speeds only. Tangents of another step are reused while the corrections
- * decrease fast enough. false: no convergence, or a joint refuses. */
+/* Size of a change of the positions in the norm of the tolerance: as a speed of the free vibration over its scale. */
+static double position_size(const StepWork *w, size_t body, double change)
+{
+    return w->frequency[body] * fabs(change) / w->speed_scale[body];
+}
+
+/* Largest change of a position at the end of a half step of size h by the last correction. */
+static double end_correction_size(const StepWork *w, double h)
+{
+    const double *p = POSITION_WEIGHTS[END];
+    double largest = 0.0;
+    for (size_t i = 0; i < N_BODIES; i++)
+        largest = fmax(largest,
+                       position_size(w, i, h * h * (p[1] * w->residual[i] + p[2] * w->residual[N_BODIES + i])));
+    return largest;
+}
+
+/* Compute a half step by Newton's method: positions, speeds and accelerations `to` at its end, and the history there.
+ * Tangents of another step are reused while the corrections decrease fast enough. The history is that of the last
+ * evaluated positions, from which the result differs by less than the tolerance; such differences do not add up, as
+ * the history has the positions themselves. false: no convergence, or a joint refuses. */
 static bool solve_step(Instance *m, const TrialStep *s, double *to, double *history_end)
 {
     StepWork *w = &m->joint->work;
-    const double precision = w->tolerance * (s->is_whole_step ? WHOLE_STEP_TOLERANCE_RATIO : NEWTON_TOLERANCE_RATIO);
-    double *k = w->accelerations, previous = INFINITY;
+    double *k = s->accelerations, previous = INFINITY;
     for (int n = 0; n < MAX_ITERATIONS; n++) {
         for (size_t stage = MIDDLE; stage <= END; stage++) {
             if (!evaluate_stage(m, s, stage, history_end))
@@ -192,18 +238,20 @@ static bool solve_step(Instance *m, const TrialStep *s, double *to, double *hist
         double size = 0.0;
         for (size_t i = 0; i < N_STATES; i++) {
             const double relative = s->size * fabs(w->residual[i]) / w->speed_scale[i % N_BODIES];
+            if (!(relative < INFINITY))
+                return false;
             k[i] += w->residual[i];
             w->largest_correction = relative > size ? i : w->largest_correction;
             size = fmax(size, relative);
         }
         if (n > 0)
             w->correction_ratio = size / previous;
-        if (size * fmin(w->correction_ratio, 1.0) <= precision) {
-            if (s->is_whole_step)
-                set_stage_values(m, s, END);
-            else if (!evaluate_stage(m, s, END, history_end))
+        if (size * fmin(w->correction_ratio, 1.0) <= NEWTON_TOLERANCE_RATIO * w->tolerance) {
+            if (end_correction_size(w, s->size) > w->tolerance && !evaluate_stage(m, s, END, history_end))
                 return false;
-            memcpy(to, w->stage_values[END] + X, (N_STATES + N_BODIES) * sizeof *to);
+            set_stage_values(m, s, END);
+            memcpy(to, w->stage_values[END] + X, N_STATES * sizeof *to);
+            memcpy(to + N_STATES, k + N_BODIES, N_BODIES * sizeof *to);
             return true;
         }
         w->tangents_are_current = n == 0 || w->correction_ratio < TANGENT_REUSE_RATIO;
@@ -212,15 +260,17 @@ static bool solve_step(Instance *m, const TrialStep *s, double *to, double *hist
     return false;
 }
 
-/* Error of the two half steps over the tolerance: by Richardson's rule for order 4, 1/15 of their difference from the
- * whole step. */
-static double estimate_error(const StepWork *w, const double *whole, const double *halves)
+/* Error of two half steps over the tolerance: by Richardson's rule for order 4, 1/15 of the difference from the whole
+ * step of size h, whose formula uses the accelerations at start, middle and end. */
+static double estimate_error(const StepWork *w, double h)
 {
     double largest = 0.0;
     for (size_t i = 0; i < N_BODIES; i++) {
-        const double speed = fabs(whole[N_BODIES + i] - halves[N_BODIES + i]);
-        const double position = sqrt(fabs(w->acceleration_tangents[i][i])) * fabs(whole[i] - halves[i]);
-        largest = fmax(largest, (speed + position) / w->speed_scale[i]);
+        const double a0 = w->nodes[0][i], a1 = w->nodes[1][i], a2 = w->nodes[2][i], a3 = w->nodes[3][i],
+                     a4 = w->nodes[4][i];
+        const double speed = h / 12.0 * fabs(a0 - 4.0 * a1 + 6.0 * a2 - 4.0 * a3 + a4);
+        const double position = h * h / 12.0 * (a0 - 3.0 * a1 + 3.0 * a2 - a3);
+        largest = fmax(largest, speed / w->speed_scale[i] + position_size(w, i, position));
     }
     return largest / (15.0 * w->tolerance);
 }
@@ -269,23 +319,30 @@ static void set_end_history(Instance *m, const double *end, const double *histor
         memcpy(history_end, history, sizeof w->history[0]);
 }
 
+static inline void swap_rows(double **a, double **b)
+{
+    double *const other = *a;
+    *a = *b;
+    *b = other;
+}
+
 Status instance_integrate(Instance *m, double size)
 {
     StepWork *w = &m->joint->work;
     InstanceState *state = &m->state;
-    double *from = w->states[0], *whole = w->states[1], *half = w->states[2], *halves = w->states[3];
-    double *history = w->history[0], *half_history = w->history[1], *history_end = w->history[2],
-           *whole_history = w->history[3];
+    double *from = w->states[0], *middle = w->states[1], *end = w->states[2];
+    double *history = w->history[0], *middle_history = w->history[1], *end_history = w->history[2];
     w->tolerance =
         state->tolerance > 0.0 ? fmax(fmin(state->tolerance, DEFAULT_TOLERANCE), MIN_TOLERANCE) : DEFAULT_TOLERANCE;
     w->tangents_are_current =
         false; /* no reuse from the step before: a restored FMU state continues with the same bits */
     w->factorized_size = 0.0;
     w->correction_ratio = 1.0;
-    double elapsed = 0.0, last_half = 0.0, next = state->previous_step_size > 0.0 ? state->previous_step_size : size;
+    double elapsed = 0.0, next = state->previous_step_size > 0.0 ? state->previous_step_size : size;
+    double known_start = 0.0, known_size = 0.0; /* of the half step from which the next accelerations are predicted */
     memcpy(from, state->values + X, (N_STATES + N_BODIES) * sizeof *from);
     memcpy(history, state->path.history[state->path.end_index], sizeof w->history[0]);
-    memcpy(half_history, history, sizeof w->history[0]);
+    memcpy(middle_history, history, sizeof w->history[0]);
     for (int attempts = 0; size - elapsed > 1e-12 * size; attempts++) {
         const double time = state->values[0] + elapsed;
         const bool is_last = next >= (1.0 - 1e-6) * (size - elapsed);
@@ -298,25 +355,26 @@ Status instance_integrate(Instance *m, double size)
         }
         for (size_t i = 0; i < N_BODIES; i++) {
             const double min_speed = MIN_SPEED_RATIO * state_nominals[N_BODIES + i];
-            w->speed_scale[i] = fmax(min_speed, fmax(fabs(from[N_BODIES + i]), h * fabs(from[2 * N_BODIES + i])));
+            w->speed_scale[i] = fmax(min_speed, fmax(fabs(from[N_BODIES + i]), h * fabs(from[N_STATES + i])));
         }
-        const TrialStep whole_step = {from, history, time, h, true};
-        const TrialStep first = {from, history, time, 0.5 * h, false};
-        const TrialStep second = {half, history_end, time + 0.5 * h, 0.5 * h, false};
-        for (size_t i = 0; i < N_STATES; i++)
-            w->accelerations[i] = from[2 * N_BODIES + i % N_BODIES];
-        bool ok = solve_step(m, &whole_step, whole, whole_history);
+        if (known_size > 0.0)
+            predict_accelerations(w->nodes, (elapsed + 0.25 * h - known_start) / known_size,
+                                  (elapsed + 0.5 * h - known_start) / known_size, w->nodes[1]);
+        else
+            for (size_t n = 1; n <= 2; n++)
+                memcpy(w->nodes[n], from + N_STATES, sizeof w->nodes[n]);
+        memcpy(w->nodes[0], from + N_STATES, sizeof w->nodes[0]);
+        const TrialStep first = {from, history, time, 0.5 * h, w->nodes[1]};
+        const TrialStep second = {middle, middle_history, time + 0.5 * h, 0.5 * h, w->nodes[3]};
+        bool ok = solve_step(m, &first, middle, middle_history);
         if (ok) {
-            memcpy(w->whole_step_accelerations, w->accelerations, sizeof w->whole_step_accelerations);
-            predict_accelerations(w, from, w->whole_step_accelerations, 0.25, 0.5);
-            ok = solve_step(m, &first, half, history_end);
-        }
-        if (ok) {
-            predict_accelerations(w, from, w->whole_step_accelerations, 0.75, 1.0);
-            ok = solve_step(m, &second, halves, whole_history);
+            predict_accelerations(w->nodes, 1.5, 2.0, w->nodes[3]);
+            ok = solve_step(m, &second, end, end_history);
         }
         w->tangents_are_current &= ok;
-        const double error = ok ? estimate_error(w, whole, halves) : INFINITY;
+        known_size = ok ? 0.5 * h : 0.0;
+        known_start = elapsed;
+        const double error = ok ? estimate_error(w, h) : INFINITY;
         const double factor = !ok ? 0.25 : error > 1e-4 ? 0.9 * portable_pow(error, -0.2) : MAX_STEP_GROWTH;
         if (error > 1.0 && (h > MIN_STEP_RATIO * size || !ok)) {
             if (!(h > MIN_STEP_RATIO * size))
@@ -325,15 +383,15 @@ Status instance_integrate(Instance *m, double size)
             continue;
         }
         elapsed += h;
-        last_half = 0.5 * h;
-        memcpy(from, halves, sizeof w->states[0]);
-        memcpy(half_history, history_end, sizeof w->history[0]); /* history at the start of the second half step */
-        memcpy(history, whole_history, sizeof w->history[0]);
+        known_start += 0.5 * h;
+        memmove(w->nodes[0], w->nodes[2], 3 * sizeof w->nodes[0]);
+        swap_rows(&from, &end);
+        swap_rows(&history, &end_history);
         const double grown_size = h * fmin(fmax(factor, 0.2), MAX_STEP_GROWTH);
         next = is_shortened ? fmax(next, grown_size) : grown_size;
     }
     memcpy(state->values + X, from, N_STATES * sizeof *from);
-    set_end_history(m, from, half_history, last_half, state->path.history[state->path.end_index]);
+    set_end_history(m, from, middle_history, known_size, state->path.history[state->path.end_index]);
     state->path.has_accepted_inputs = 0;
     state->previous_step_size = next;
     return OK;

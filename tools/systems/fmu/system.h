@@ -39,17 +39,18 @@ extern const unsigned short connections[N_CONNECTIONS];
 typedef struct {
     double stage_values[2][FIRST_PARAMETER]; /* values of the system at middle and end of a step */
     double seed[N_INPUTS + N_STATES], sensitivity[N_OUTPUTS];
-    double acceleration_tangents[N_BODIES][N_STATES]; /* derivatives with respect to positions and speeds */
+    double acceleration_tangents[N_STATES][N_BODIES]; /* derivatives with respect to each position, each speed */
+    double frequency[N_BODIES];                       /* natural frequency of each body if the others rest [rad/s] */
     bool tangents_are_current;
     double correction_ratio; /* size of the last correction of Newton's method over the one before */
-    double matrix[N_STATES][N_STATES], residual[N_STATES]; /* linear system of Newton's method */
-    double factorized_size; /* size of the step whose matrix is factorized; 0: none */
-    unsigned short pivot[N_STATES];
+    double matrix[2][N_BODIES][N_BODIES], residual[N_STATES]; /* complex linear system of Newton's method */
+    double factorized_size; /* size of the half step whose matrix is factorized; 0: none */
+    unsigned short pivot[N_BODIES];
     double speed_scale[N_BODIES];          /* speed that the tolerance refers to [m/s, rad/s] */
     double tolerance;                      /* relative tolerance of the speeds */
-    double states[4][N_STATES + N_BODIES]; /* positions, speeds and accelerations at the ends of steps */
-    double accelerations[2 * N_BODIES], whole_step_accelerations[2 * N_BODIES]; /* at middle and end of a step */
-    double history[4][N_HISTORY + 1];
+    double states[3][N_STATES + N_BODIES]; /* positions, speeds and accelerations at the ends of half steps */
+    double nodes[5][N_BODIES];             /* accelerations at start, middle and end of both half steps */
+    double history[3][N_HISTORY + 1];
     double times[N_TIME_EVENTS + 1];
     size_t largest_correction; /* index of the acceleration with the largest last correction */
     Text refusal;              /* reason why a joint refused the last evaluation, or empty */
