@@ -1,7 +1,6 @@
 """Error of the finite elements of a bolted joint: symmetry of the mesh, and its convergence."""
 
 from dataclasses import asdict, replace
-from unittest.mock import patch
 
 import numpy as np
 import pytest
@@ -11,6 +10,7 @@ from jointfmu_tools.fem.mesh import find_contact_cells
 from jointfmu_tools.fem.symmetric_plan import mesh_symmetric_plan
 from jointfmu_tools.fem.whole_joint import JointFiniteElements
 from jointfmu_tools.joints.bolted_joint.new import NEW_JOINT_COMMAND, plate_finite_elements
+from jointfmu_tools.joints.bolted_joint.new.plate import read_drawing
 
 M10 = {"plate": "60x60", "bolts": "M10", "at": None, "preload": "20e3", "grid": None}
 CONVERGED = {
@@ -71,23 +71,15 @@ def test_a_body_that_ends_under_a_head_is_refused():
         mesh_symmetric_plan(replace(found, side2=TappedPlate(**sizes, depth=5e-3)), 1.0, False)
 
 
-class FoundPlates(Exception):
-    """The command has reached its finite elements."""
-
-
 def linear_joint(name, refinement=1.0):
     """Finite elements of a joint of CONVERGED under rigid heads, and the stiffness of its bolt [N/m]."""
     grip, material, _ = CONVERGED[name]
     options = dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.options) | M10
     options |= {"grip": grip, "material": material, "Ra": ["0.8"], "attached": "heads"}
-    with (
-        patch.object(plate_finite_elements, "compute_joint_or_warning", side_effect=FoundPlates) as compute,
-        pytest.raises(FoundPlates),
-    ):
-        NEW_JOINT_COMMAND.make_joint(options)
-    file, plates = compute.call_args.args[:2]
-    joint = JointFiniteElements.from_assembly(plates.make_assembly(file), "heads", refinement)
-    springs = plate_finite_elements._interface_stiffness(file, plates.preload, joint, None)
+    drawn = read_drawing(options)
+    file = drawn.file
+    joint = JointFiniteElements.from_assembly(drawn.plates.make_assembly(file), "heads", refinement)
+    springs = plate_finite_elements._interface_stiffness(file, drawn.plates.preload, joint, None)
     return joint.linearize(springs, file.values.bolt_stiffness), file.values.bolt_stiffness
 
 

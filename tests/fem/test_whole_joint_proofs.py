@@ -3,11 +3,9 @@
 from dataclasses import replace
 from importlib.resources import files
 
-import coarse
 import numpy as np
 import pytest
 from clients import needs
-from jointfmu_tools.fem.whole_joint import JointFiniteElements
 from oracles.coulomb_springs import Springs
 from oracles.joint_elements import (
     JOINTS,
@@ -125,16 +123,15 @@ def test_a_reduced_lap_has_the_compliance_of_shear_lag(reach):
 
 @needs("gmsh")
 @pytest.mark.slow
-def test_a_bracket_slips_under_a_lever_as_its_elements_do(enter):
+def test_a_bracket_slips_under_a_lever_as_its_elements_do():
     """Loading to slip, three times as far, and back. Measured: 1.2 % of the force, 1.9 % of the heat, with
     coarse elements.
 
     The friction limit follows the normal force of the contact, also where it bends. With patches that open
     independently of the contact, the wide path of six directions at the end has no equilibrium.
     """
-    enter(coarse.elements(JointFiniteElements, 0.7))
     attached, drawing, wrench = JOINTS["bracket"]
-    joint = PlateJoint.of(attached, drawing, elements=True)
+    joint = PlateJoint.of(attached, drawing, 0.7, elements=True)
     elements = FrictionElements.clamped(joint, wrench)
     loads = [0.5, 1.0, 2.0, 3.0, 2.0, 0.0, -2.0, -3.0]
     force, heat = elements.follow(loads)

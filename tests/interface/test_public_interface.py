@@ -7,7 +7,6 @@ import sys
 from contextlib import chdir
 from importlib import import_module
 
-import coarse
 import numpy as np
 import pytest
 from clients import needs
@@ -36,10 +35,9 @@ def folder(tmp_path, enter):
 
 
 @pytest.fixture
-def plate(enter):
+def plate():
     """Function that makes the bolted joint of PLATE without the finite elements of its members."""
-    enter(coarse.interface_alone())
-    return lambda **changes: jointfmu.bolted_joint(**PLATE | changes)
+    return lambda **changes: jointfmu.bolted_joint(**PLATE | {"sides": "rigid"} | changes)
 
 
 def test_the_package_shows_its_interface_and_nothing_else():

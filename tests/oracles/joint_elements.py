@@ -7,7 +7,6 @@ factor.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from unittest.mock import patch
 
 import numpy as np
 from jointfmu_tools.fem.elasticity import Cholesky
@@ -16,6 +15,7 @@ from jointfmu_tools.fem.reduction.elastic_bodies import reduce_bodies
 from jointfmu_tools.fem.reduction.states import CellwiseJoint, UnitLoadResponse, approach_at_stiffness
 from jointfmu_tools.fem.whole_joint import JointFiniteElements, LinearJoint
 from jointfmu_tools.joints.bolted_joint.new import NEW_JOINT_COMMAND, plate_finite_elements
+from jointfmu_tools.joints.bolted_joint.new.plate import read_drawing
 from numpy.typing import NDArray
 from scipy import sparse as sp
 
@@ -23,7 +23,7 @@ from jointfmu.joints.bolted_joint.joint import BoltedJointSpring, JointInputs
 from jointfmu.joints.bolted_joint.law import RoughBoltedJointParameters, preload_pressure
 from jointfmu.mechanics.curve import Curve
 from jointfmu.mechanics.footprint.bolts import pressure_distribution
-from jointfmu.mechanics.footprint.distribution import NodalField, PressureDistribution
+from jointfmu.mechanics.footprint.distribution import NodalField
 from jointfmu.mechanics.footprint.point_reduction import reduce_points
 from jointfmu.parameters import ParameterFile
 
@@ -125,42 +125,34 @@ class PlateJoint:
         refinement: float = 1.0,
         elements: bool = False,
     ) -> "PlateJoint":
-        """Make the joint as the command makes it, with element sizes divided by `refinement` [1].
+        """Make the joint as the command makes it.
 
-        elements : True: one contact point for each element; False: nine points
+        refinement : divides the element sizes [1]; above 1, the reduced joint keeps the elements of the
+            command
+        elements   : True: one contact point for each element; False: nine points
         """
-        seen: dict[str, object] = {}
-        real = plate_finite_elements.compute_joint
-
-        def watched(
-            file: ParameterFile,
-            plates: plate_finite_elements.BoltedPlates,
-            to: str,
-            shape: PressureDistribution | None,
-        ) -> plate_finite_elements.ComputedJoint:
-            joint = JointFiniteElements.from_assembly(plates.make_assembly(file), to, refinement)
-            if elements:
-                joint = replace(joint, contact_interface=patches(joint.contact_interface))
-            springs = plate_finite_elements._interface_stiffness(file, plates.preload, joint, shape)
-            linear = joint.linearize(springs, file.values.bolt_stiffness)
-            seen.update(rigid=file, preload=plates.preload, normal=springs[:, 2], linear=linear)
-            if refinement != 1.0:
-                return real(file, plates, to, shape)
-            with (  # the command's own finite elements are these
-                patch.object(JointFiniteElements, "from_assembly", lambda *_, **__: joint),
-                patch.object(JointFiniteElements, "linearize", lambda *_: linear),
-            ):
-                return real(file, plates, to, shape)
-
-        plate_finite_elements.compute_joint = watched
-        try:
-            given = dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.options) | dict(example)
-            given["attached"] = attached
-            made = NEW_JOINT_COMMAND.make_joint(given)
-        finally:
-            plate_finite_elements.compute_joint = real
-        facts: dict[str, tuple[float, str, str]] = dict(made.facts)
-        return cls(file=made.file, members=facts["member_stiffness"][0], **seen)  # type: ignore[arg-type]
+        options = dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.options) | dict(example)
+        drawn = read_drawing(options)
+        file, plates = drawn.file, drawn.plates
+        joint = JointFiniteElements.from_assembly(plates.make_assembly(file), attached, refinement)
+        if elements:
+            joint = replace(joint, contact_interface=patches(joint.contact_interface))
+        springs = plate_finite_elements._interface_stiffness(file, plates.preload, joint, None)
+        linear = joint.linearize(springs, file.values.bolt_stiffness)
+        if refinement <= 1.0:
+            rigid = BoltedJointSpring.for_joint(file.values)
+            bodies = reduce_bodies(linear, rigid, springs[:, 2], plates.preload)
+            elastic = plate_finite_elements.set_elastic_bodies(file, bodies, attached)
+        else:
+            elastic = plate_finite_elements.compute_joint(file, plates, attached).parameter_file
+        return cls(
+            file=elastic,
+            rigid=file,
+            linear=linear,
+            normal=springs[:, 2],
+            preload=plates.preload,
+            members=drawn.clamped_bolt.member_stiffness,
+        )
 
     @property
     def spring(self) -> BoltedJointSpring:

@@ -13,7 +13,6 @@ import sys
 from pathlib import Path
 from subprocess import PIPE
 
-import coarse
 import numbers_of_all
 import numpy as np
 import pytest
@@ -69,9 +68,8 @@ def paths(tmp_path_factory) -> list[Path]:
     folder = tmp_path_factory.mktemp("files")
     first, *others = PLATES
     assert cli.main(drawing(first, folder)) == 0
-    with coarse.interface_alone():
-        for name in others:
-            assert cli.main(drawing(name, folder)) == 0
+    for name in others:
+        assert cli.main([*drawing(name, folder), "--sides", "rigid"]) == 0
     return sorted(folder.iterdir())
 
 

@@ -1,4 +1,4 @@
-"""Contexts for commands that compute much: coarse elements and grids, the interface alone, kept results.
+"""Contexts for commands that compute much: coarse elements and grids, kept results.
 
 Coarse ones are for tests of what does not depend on the resolution.
 """
@@ -27,15 +27,6 @@ def elements(of: Any, refinement: float) -> Any:
         return own(*arguments[:count], refinement)
 
     return _replaced(of, "from_assembly", from_assembly)
-
-
-def interface_alone() -> Any:
-    """Omit the finite elements of the complete joint, which take seconds."""
-    from jointfmu_tools.joints.bolted_joint.new import plate_finite_elements as plates
-
-    return _replaced(
-        plates, "compute_joint_or_warning", lambda file, *arguments: plates.NewJoint(file, {}, [])
-    )
 
 
 def contact_cells(count: int) -> Any:

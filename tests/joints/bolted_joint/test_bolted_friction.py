@@ -438,20 +438,46 @@ def test_a_turned_frame_gives_turned_forces(degrees, memory):
         assert other["E_loss"] == pytest.approx(one["E_loss"], rel=0.06, abs=1e-15)
 
 
-@pytest.mark.parametrize("part", [0.5, 0.9])
-def test_a_normal_force_that_swings_takes_shear_once(spring, part):
-    """At constant displacement, the normal force falls by 30 % and returns: shear force is lost in the first
-    cycle only, within 0.1 % of the theorem (Popov and Hess 2015), and not in the next forty cycles."""
+def reduced_load(spring, share):
+    """Opening [m] at which the normal force is this share of that of the tightened joint."""
     force = 9e3 * JOINT.n_bolts
+    return brentq(lambda z: rest(spring, [0, 0, z, 0, 0, 0])["f_z"] + (1.0 - share) * force, 0.0, 5e-6)
 
-    def normal(z):
-        return rest(spring, np.array([0, 0, z, 0, 0, 0]))["f_z"] + force
 
-    low = brentq(lambda z: normal(z) - 0.7 * force, 0.0, 5e-6)
-    shift = brentq(lambda u: rest(spring, [u, 0, 0, 0, 0, 0])["f_x"] + part * JOINT.mu * force, 0.0, 1e-5)
+def partial_slip(spring, part):
+    """Displacement [m] along x with this part of the friction limit of the tightened joint."""
+    limit = JOINT.mu * 9e3 * JOINT.n_bolts
+    return brentq(lambda u: rest(spring, [u, 0, 0, 0, 0, 0])["f_x"] + part * limit, 0.0, 1e-5)
+
+
+SEPARATION = [np.array([x, 0.0, z, 0.0, 0.0, 0.0]) for x, z in ((0, 0), (5e-7, 0), (5e-7, 1e-4), (0, 1e-4))]
+"""Path that shears the joint and separates it; closed without shear, it has no traction."""
+
+
+@pytest.mark.parametrize("before", [[], SEPARATION], ids=["tightened", "separated"])
+@pytest.mark.parametrize("part", [0.5, 0.9])
+def test_a_normal_force_that_swings_takes_shear_once(spring, part, before):
+    """Decrease by 30 % and return, at constant displacement. Springs that lifted off lose their force the
+    first time, within 0.1 % of the theorem (Popov and Hess 2015), and none in the next forty cycles; also in
+    a joint that was separated before."""
+    low, shift = reduced_load(spring, 0.7), partial_slip(spring, part)
     ends = [np.array([shift, 0, z, 0, 0, 0]) for z in (0.0, low)]
-    found = [-out["f_x"] for out in walk(spring, [ends[0], *40 * [ends[1], ends[0]]])]
-    kappa = rest(spring, np.zeros(6))["K_xx"] / rest(spring, np.zeros(6))["K_zz"]
-    left = JOINT.mu * (normal(low) - normal(low + kappa * shift / JOINT.mu))
+    path = [*before, np.zeros(6), ends[0], *40 * [ends[1], ends[0]]]
+    found = [-out["f_x"] for out in walk(spring, path)][len(before) + 1 :]
+    tightened = rest(spring, np.zeros(6))
+    further = rest(spring, [0, 0, low + tightened["K_xx"] / tightened["K_zz"] * shift / JOINT.mu, 0, 0, 0])
+    left = JOINT.mu * (rest(spring, [0, 0, low, 0, 0, 0])["f_z"] - further["f_z"])
     assert found[2] == pytest.approx(left, rel=1e-3 / 0.7)
     assert found[2:] == pytest.approx(len(found[2:]) * [found[2]], rel=1e-12)
+
+
+@pytest.mark.parametrize("part", [0.5, 0.9])
+def test_the_first_slip_does_not_depend_on_the_steps(spring, part):
+    """One step from the tightened state into slip under a lower load, and 400 steps along the same straight
+    path.
+
+    Measured: 1.8e-5 and 2e-6 of the force. With slider heights of the end of the step: 1.3e-4 and 2.2e-4.
+    """
+    end = np.array([partial_slip(spring, part), 0, reduced_load(spring, 0.7), 0, 0, 0])
+    force = [walk(spring, np.outer(np.linspace(0.0, 1.0, steps + 1), end))[-1]["f_x"] for steps in (1, 400)]
+    assert force[0] == pytest.approx(force[1], rel=5e-5)

@@ -22,7 +22,13 @@ from jointfmu_tools.inputs.drawing.tables import (
     read_washers,
 )
 from jointfmu_tools.joints.bolted_joint.gross_slip import friction_results, preload_results
-from jointfmu_tools.joints.bolted_joint.new import TIGHTENING_METHODS, layout, plate_finite_elements
+from jointfmu_tools.joints.bolted_joint.new import (
+    NEW_JOINT_COMMAND,
+    STANDARD_WASHERS,
+    TIGHTENING_METHODS,
+    layout,
+)
+from jointfmu_tools.joints.bolted_joint.new.plate import read_drawing
 from jointfmu_tools.joints.bolted_joint.report import preload_figures
 from jointfmu_tools.studies.uncertainty.problem import resolve_interval, state_problem
 
@@ -38,16 +44,12 @@ LOAD = ["--preload", "30e3"]
 STILL = (0.0, 0.0, 0.0)
 
 
-@pytest.fixture(autouse=True)
-def interface_alone(enter):
-    """Omit the finite elements of the complete joint, which test_bolted_plate.py tests."""
-    enter(coarse.interface_alone())
-
-
 def made(capsys, *words, path=None):
-    """JSON object that the command prints."""
+    """JSON object that the command prints about the interface alone; test_bolted_plate.py has the complete
+    joint."""
     out = ["--out", str(path)] if path else []
-    assert cli.main(["new", "bolted-joint", *map(str, words), *out, "--json"]) == 0
+    sides = ["--sides", "rigid"]
+    assert cli.main(["new", "bolted-joint", *map(str, words), *sides, *out, "--json"]) == 0
     return warnings_but_shape(json.loads(capsys.readouterr().out))
 
 
@@ -206,7 +208,7 @@ KNOWN = ["--thread-friction", "0.12", "--head-friction", "0.12"]
 def test_a_torque_gives_a_preload_with_its_range(capsys, tmp_path):
     """84 N.m on M12 with mu = 0.12: Table A1 has 43.0 kN; a torque wrench scatters by a third."""
     path = tmp_path / "plate.toml"
-    facts = facts_of(capsys, *PLATE, *FACES, *TORQUE, *KNOWN, "--sides", "rigid")
+    facts = facts_of(capsys, *PLATE, *FACES, *TORQUE, *KNOWN)
     assert facts["preload"] == pytest.approx(43.0e3, rel=0.01)
     made(capsys, *PLATE, *FACES, *TORQUE, *KNOWN, path=path)
     file = load_parameter_file(path)
@@ -238,6 +240,7 @@ def test_python_takes_a_torque_too(capsys, tmp_path):
         "grip": 40,
         "material": "steel",
         "Ra": 0.8,
+        "sides": "rigid",
     }
     friction = {"thread_friction": 0.12, "head_friction": 0.12}
     joint = jointfmu.bolted_joint(**sizes, torque=84, tightening="angle", **friction)
@@ -351,8 +354,8 @@ def test_load_factor_of_a_published_analysis(capsys):
 
 @pytest.mark.parametrize("stated", ["24x2.5", "24mmx2500um", "ISO 7089", "iso7089"])
 def test_washers_of_the_standard_are_those_of_stated_size(capsys, stated):
-    alone = facts_of(capsys, *PLATE, *FACES, *LOAD, "--washers", "--sides", "rigid")
-    found = facts_of(capsys, *PLATE, *FACES, *LOAD, "--sides", "rigid", "--washers", stated)
+    alone = facts_of(capsys, *PLATE, *FACES, *LOAD, "--washers")
+    found = facts_of(capsys, *PLATE, *FACES, *LOAD, "--washers", stated)
     for name in ("bolt_stiffness", "member_stiffness", "washer_stiffness", "embedding", "slip_force"):
         assert found[name] == pytest.approx(alone[name], rel=1e-12), name
 
@@ -390,20 +393,19 @@ def test_a_washer_limits_the_cone(capsys):
     assert found["plate.cone_diameter"] == pytest.approx(18e-3 + 2.0 * 20e-3 * slope)
 
 
-def test_finite_elements_and_file_have_the_washers(capsys, tmp_path, monkeypatch):
+def test_finite_elements_and_file_have_the_washers(capsys, tmp_path):
     """The bearing face is the cone below the washer, at most D; the washers are in series with the bolt."""
-    seats = []
-
-    def watched(file, plates, *arguments):
-        seats.append(plates.bearing_diameter)
-        return plate_finite_elements.NewJoint(file, {}, [])
-
-    monkeypatch.setattr(plate_finite_elements, "compute_joint_or_warning", watched)
-    path = tmp_path / "plate.toml"
-    for words in ([], ["--washers"], ["--washers", "18x2.5"]):
-        facts = made(capsys, *PLATE, *FACES, *LOAD, *words, path=path)["facts"]
+    drawing = dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.options)
+    drawing |= {"plate": "200x100", "bolts": "4xM12", "at": ["160x60"], "grip": ["40"]}
+    drawing |= {"material": ["steel"], "Ra": ["0.8"], "preload": "30e3"}
+    seats = [
+        read_drawing(drawing | {"washers": washers}).plates.bearing_diameter
+        for washers in (None, STANDARD_WASHERS, "18x2.5")
+    ]
     slope = vdi2230.cone_slope(0.045, 16.63e-3, 0.04, is_tapped=False)
     assert seats == pytest.approx([16.63e-3, 16.63e-3 + 2.0 * 2.5e-3 * slope, 18e-3])
+    path = tmp_path / "plate.toml"
+    facts = made(capsys, *PLATE, *FACES, *LOAD, "--washers", "18x2.5", path=path)["facts"]
     file = load_parameter_file(path)
     assert file.values.bolt_stiffness == facts["bolt_stiffness"]["value"]
     assert "5 mm of washers, in series with two washers of 18 x 2.5 mm" in file.sources["bolt_stiffness"]

@@ -18,7 +18,7 @@ from ....inputs.drawing.tables import Thread, find_row, thread_source
 from ..gross_slip import PRELOAD_ENTRY, friction_results, preload_results
 from . import ATTACHMENTS, layout, plate_finite_elements
 from .plate_finite_elements import BoltedPlates, compute_pressure_field
-from .tightening import find_preload
+from .tightening import AssemblyPreload, find_preload
 from .washers import (
     MAX_BEARING_OVER_THREAD_DIAMETER,
     BoltWashers,
@@ -80,8 +80,26 @@ class ClampedBolt:
         return self.washers.washer.hole_diameter if self.washers else self.hole_diameter
 
 
-def make_joint(options: DrawingOptions) -> NewJoint:
-    """Make the parameters of a bolted joint from the options of a drawing.
+@dataclass(frozen=True, slots=True)
+class DrawnJoint:
+    """Joint of two plates from a drawing, before finite elements.
+
+    file         : parameters of the interface alone
+    plates       : from which finite elements are made
+    clamped_bolt : one bolt with its clamped parts
+    tightening   : preload with its range
+    heights      : maximum height of the faces; None: not stated
+    """
+
+    file: ParameterFile
+    plates: BoltedPlates
+    clamped_bolt: ClampedBolt
+    tightening: AssemblyPreload
+    heights: faces.HeightRange | None
+
+
+def read_drawing(options: DrawingOptions) -> DrawnJoint:
+    """Read the options of a drawing of two plates.
 
     Raises ValueError with a one-line message for options that are invalid or contradict each other.
     """
@@ -115,7 +133,7 @@ def make_joint(options: DrawingOptions) -> NewJoint:
     sheet.add_parameter("mass", mass, "estimate", "mass of the plate of side 1, assumed to vibrate")
     tightening = find_preload(options, thread, bolt.head_diameter, bolt.head_hole_diameter)
     tightening.add_to(sheet)
-    preload, warnings = tightening.force, [*tightening.warnings]
+    preload = tightening.force
     if not loss < preload:
         raise ValueError(
             f"embedding takes {loss:.4g} N of a preload of {preload:.4g} N: expected less than all; state "
@@ -133,17 +151,27 @@ def make_joint(options: DrawingOptions) -> NewJoint:
         layers = (*layers, vdi2230.ClampedPart(_plate_thicknesses(options)[1], moduli[1]))
         depth = THREAD_DEPTH_OVER_DIAMETER * thread.nominal_diameter
     plates = BoltedPlates(plate, layers, bolt.bearing_diameter, density, preload, preload - loss, depth)
-    shape = None
+    return DrawnJoint(file, plates, bolt, tightening, heights)
+
+
+def make_joint(options: DrawingOptions) -> NewJoint:
+    """Make the parameters of a bolted joint from the options of a drawing.
+
+    Raises ValueError with a one-line message for options that are invalid or contradict each other.
+    """
+    drawn = read_drawing(options)
+    file, bolt, tightening, shape = drawn.file, drawn.clamped_bolt, drawn.tightening, None
+    loss, warnings = file.values.embedding, [*tightening.warnings]
     if options["field"] == "computed":
-        file, shape = compute_pressure_field(file, plates)
+        file, shape = compute_pressure_field(file, drawn.plates)
     is_rigid = options["sides"] == "rigid" or (options["tapped"] and options["thickness"] is None)
     joint = NewJoint(file, {})
     if not is_rigid:
         attached = options["attached"] or next(iter(ATTACHMENTS))
-        joint = plate_finite_elements.compute_joint_or_warning(file, plates, attached, shape)
-    facts = _design_facts(file, bolt, heights, preload)
+        joint = plate_finite_elements.compute_joint_or_warning(file, drawn.plates, attached, shape)
+    facts = _design_facts(file, bolt, drawn.heights, tightening.force)
     if is_rigid:
-        facts |= _interface_share_facts(facts["interface_K_zz"][0] / count, bolt)
+        facts |= _interface_share_facts(facts["interface_K_zz"][0] / file.values.n_bolts, bolt)
     if is_rigid and options["sides"] is None:
         warnings.append(
             "the FMU is the interface alone; for the complete joint state --thickness of both plates"
