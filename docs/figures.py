@@ -138,7 +138,7 @@ def svg(draw: Callable[[Figure], None], size: tuple[float, float], layout: str |
 
 
 def _layers(package: str) -> list[list[str]]:
-    """Layers of a package from above, the names that stand beside each other in a row."""
+    """Layers of the package from the top; each row has the names of modules of one layer."""
     tools = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]
     contract = next(c for c in tools["importlinter"]["contracts"] if c.get("containers") == [package])
     rows = [layer.split(" | ") for layer in contract["layers"]]

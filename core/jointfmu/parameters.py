@@ -200,7 +200,7 @@ def load_parameter_file(path: str | Path, joint_name: str | None = None) -> Para
     prefix = _heights_prefix(cls)
     if prefix == _COMPARISON_SECTION_PREFIX and _ROUGHNESS_SECTION_PREFIX[:-1] in body:
         raise ValueError(
-            f"{path}: [roughness] does not act on law = {law!r}; allowed are [roughness] beside a law with a "
+            f"{path}: [roughness] does not act on law = {law!r}; allowed are [roughness] with a law with a "
             "height, and [comparison] for what the level is judged by"
         )
     declared = declared_entries(stated, cls)

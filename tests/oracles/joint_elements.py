@@ -1,6 +1,6 @@
 """Bolted joints with elastic plates by finite elements, as references for the reduced joint.
 
-`PlateJoint` is a joint as `jointfmu new` makes it, beside its linear finite elements. `FrictionElements` has
+`PlateJoint` is a joint as `jointfmu new` makes it, with its linear finite elements. `FrictionElements` has
 Coulomb friction at every element of the contact. `Lap` has the closed form of shear lag, `vdi_2230` the load
 factor.
 """

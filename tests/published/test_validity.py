@@ -49,7 +49,7 @@ def test_tangential_stiffness_follows_mindlin(nu):
 
 
 def test_elastic_stiffness_hardly_depends_on_the_dimension():
-    """For all D, k = p/(0.48 h_rms) (Akarapu, Sharp, Robbins 2011), with waves up to a quarter of the side."""
+    """k = p/(0.48 h_rms) for all D (Akarapu, Sharp, Robbins 2011), with waves up to a quarter of the side."""
     loads = (0.025, 0.05)
     alpha = [
         interface_laws.elastic(H, 4, seeds=range(3), loads=loads, points=128, finest=4)["alpha"].mean()

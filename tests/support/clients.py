@@ -244,7 +244,7 @@ CLIENTS = {
     ),
     "tamaas": Client(
         script("import tamaas; tamaas.ModelFactory.createModel(tamaas.model_type.basic_2d, [1, 1], [4, 4])"),
-        "stiffness and partial slip of rough surfaces beside boundary elements",
+        "stiffness and partial slip of rough surfaces, compared with boundary elements",
         f"{LINUX_WHEEL}, Python before 3.15",
     ),
     "gmsh": Client(
@@ -254,7 +254,7 @@ CLIENTS = {
     ),
     "CalculiX": Client(
         solve_cube,
-        "exported springs and contact, and opening plates, beside another solver",
+        "exported springs and contact, and opening plates, compared with another solver",
         "`calculix-ccx`",
     ),
     "Chromium": Client(

@@ -82,7 +82,7 @@ def roughness_settings(
     fractals = {name: settings[name] for name in FRACTAL_PROFILE_PARAMETERS if name in settings}
     others = {name: value for name, value in settings.items() if name not in {*heights, *fractals}}
     if heights and fractals:
-        raise ValueError(f"{', '.join(fractals)} beside {', '.join(heights)}: expected D and G, or heights")
+        raise ValueError(f"{', '.join(fractals)} with {', '.join(heights)}: expected D and G, or heights")
     if heights:
         return others | (heights if [*heights] == ["h"] else {"h": combined_height(check_heights(heights))})
     if fractals:

@@ -88,7 +88,7 @@ def check_heights(heights: Mapping[str, Any], name_prefix: str = "") -> dict[str
         conflicts = [other for other in conflicting_heights(name) if other in heights]
         if conflicts:
             others = ", ".join(name_prefix + other for other in conflicts)
-            texts.append(f"{name_prefix}{name} beside {others}: state one height for each side, or only h")
+            texts.append(f"{name_prefix}{name} with {others}: state one height for each side, or only h")
             break
     if texts:
         raise ValueError("; ".join(texts))

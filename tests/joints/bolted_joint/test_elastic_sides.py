@@ -459,7 +459,7 @@ def test_what_does_not_go_with_elastic_sides_is_refused(made, tmp_path, capsys):
     line = refused_line(capsys, "new", "bolted-joint", *FOUR, "--thickness", "10", "12")
     assert "--thickness = 10 and 12 mm contradicts --grip = 20 mm" in line
     line = refused_line(capsys, "new", "bolted-joint", *FOUR, "--tapped", "--sides", "elastic")
-    assert "--sides elastic beside --tapped" in line
+    assert "--sides elastic with --tapped" in line
 
 
 def test_a_path_far_into_slip_and_opening_is_found_with_few_parts(made, monkeypatch):

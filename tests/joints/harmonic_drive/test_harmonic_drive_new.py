@@ -139,7 +139,7 @@ def test_what_is_fixed_decides_the_ratio(capsys, words, ratio):
 
 def test_a_ratio_with_its_sign_leaves_nothing_to_be_fixed(capsys):
     asked = ("new", "harmonic-drive", "--catalogue", "CSG-17-80", "--ratio=-80", "--fixed", "flexspline")
-    assert "--fixed flexspline beside --ratio = -80, whose sign is stated" in refused_line(capsys, *asked)
+    assert "--fixed flexspline with --ratio = -80, whose sign is stated" in refused_line(capsys, *asked)
 
 
 SPRING = MODELS["HarmonicDriveSpring"]

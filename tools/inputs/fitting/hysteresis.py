@@ -40,7 +40,7 @@ _MAX_SECANT_STEPS, _MAX_LOG_DECREMENT = 12, 3.0
 
 @dataclass(frozen=True, slots=True)
 class NonlinearSpring:
-    """Nonlinear elastic spring beside the friction: force E(u), odd in the motion u, and energy V(u)."""
+    """Nonlinear elastic spring parallel to the friction: force E(u), odd in the motion u, and energy V(u)."""
 
     force: ForceFunction
     energy: ForceFunction

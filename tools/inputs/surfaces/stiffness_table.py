@@ -73,7 +73,7 @@ def points_from_tail(curve: BearingCurve, materials: MaterialPair, files: str) -
     pressure, stiffness = curve.stiffness_table(materials.modulus)
     source = (
         f"upper tail of the heights of {files}: pressure over decay length, E* = {materials.modulus:.4g} Pa "
-        f"of {materials.names}; range: single surfaces beside boundary elements (docs/validity_stiffness.md)"
+        f"of {materials.names}; range: from boundary elements of single surfaces (docs/validity_stiffness.md)"
     )
     return InterfacePoints(pressure, stiffness, materials.ratio, TABLE_FACTOR_RANGE, source)
 

@@ -141,7 +141,7 @@ def _signed_ratio(options: DrawingOptions, ratio: SourcedNumber) -> tuple[Source
     if ratio.value < 0.0:
         if options["fixed"]:
             raise ValueError(
-                f"--fixed {options['fixed']} beside --ratio = {ratio.value:g}, whose sign is "
+                f"--fixed {options['fixed']} with --ratio = {ratio.value:g}, whose sign is "
                 "stated; expected "
                 "the ratio as catalogues print it, above 0"
             )

@@ -94,7 +94,7 @@ def make_joint(options: DrawingOptions) -> NewJoint:
     moduli = (sheet.get_value("side1.E"), sheet.get_value("side2.E"))
     for name, value in (("field", "computed"), ("sides", "elastic"), ("attached", options["attached"])):
         if options["tapped"] and options["thickness"] is None and value and options[name] == value:
-            raise ValueError(f"--{name} {value} beside --tapped: expected --thickness of both plates for it")
+            raise ValueError(f"--{name} {value} with --tapped: expected --thickness of both plates for it")
     bolt = clamp_bolt(options, thread, (length, width), positions, hole, moduli)
     plate = BoltedPlate(
         length=length,

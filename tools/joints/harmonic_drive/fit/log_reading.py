@@ -321,7 +321,7 @@ def _motor_torque(
         )
     if torque_constant is None:
         raise ValueError(
-            f"{log_columns.path}: has a current alone; expected --torque-constant [N.m/A] beside it"
+            f"{log_columns.path}: has the motor current, but no torque; expected --torque-constant [N.m/A]"
         )
     return torque_constant * current
 
