@@ -148,7 +148,12 @@ def single_drives():
         "running torque [mN m]",
         "back-driving torque, published [N m]",
     )
-    head += ("model", "guess: ratio times starting torque", "efficiency, published [%]", "model, calibrated to it")
+    head += (
+        "model",
+        "guess: ratio times starting torque",
+        "efficiency, published [%]",
+        "model, calibrated to it",
+    )
     print_table((*head, "predicted from back-driving torque", "guess: no `load_loss`"), rows)
 
 

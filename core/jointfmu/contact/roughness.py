@@ -67,7 +67,7 @@ def predicted_stiffness(pressure: Number, h: Number) -> Number:
 def conflicting_heights(height_name: str) -> tuple[str, ...]:
     """Names of the heights that a file must not state together with a height.
 
-    These are the other heights of the same surface, and the combined height `h`.
+    The result has the other heights of the same surface, and the combined height `h`.
     """
     if height_name == "h":
         return tuple(other for other in HEIGHT_FIELDS if other != "h")

@@ -38,7 +38,7 @@ class FlangeRating(NamedTuple):
 def use_parameters_as_law(parameters: object) -> object:
     """Return a parameter set unchanged.
 
-    It is `extract_law` of a joint whose parameter set is itself the interface law.
+    A joint whose parameter set is itself the interface law uses this function as `extract_law`.
     """
     return parameters
 

@@ -111,7 +111,7 @@ class FrictionWork:
 def _force_scale(forces: Array) -> Array:
     """Divisors (s, 3 + k) of errors of generalised forces.
 
-    There is one divisor for x and y, one for the moment, and one for the modes.
+    Each state has one divisor for x and y, one for the moment, and one for the modes.
     """
     force, moment, modes = (np.linalg.norm(f, axis=1) for f in (forces[:, :2], forces[:, 2:3], forces[:, 3:]))
     lever_arm = np.max(moment) / np.max(force)

@@ -1,6 +1,6 @@
 """The two faces of a contact on a drawing: material, and roughness from finish, Ra, Rq, Rz or a scan.
 
-Also the Hertzian line contact of curved faces.
+This module also computes the Hertzian line contact of curved faces.
 """
 
 from pathlib import Path

@@ -133,8 +133,8 @@ class BearingCurve:
     def decay_length(self) -> Array:
         """Decay length l [m] at each section: p ~ exp(approach/l).
 
-        It is the mean excess. At heavy load the hills interact: where the mean excess of Gaussian heights
-        would be above GAUSSIAN_DECAY_LIMIT h, the mean excess is lowered by the same factor.
+        The decay length is the mean excess. At heavy load the hills interact: where the mean excess of
+        Gaussian heights would be above GAUSSIAN_DECAY_LIMIT h, the mean excess is lowered by the same factor.
         """
         limit = GAUSSIAN_DECAY_LIMIT / gaussian_mean_excess(self.share)
         return np.asarray(self.mean_excess * np.minimum(limit, 1.0))

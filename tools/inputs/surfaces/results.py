@@ -178,8 +178,8 @@ class Identification:
     def undetermined_reason(self, direction: str | None = None) -> str | None:
         """Reason why D and G in a direction are not determined; None if they are.
 
-        They are determined if the surface is self-affine by all methods with D inside of its interval, if the
-        confidence intervals of D overlap, and if G is determined.
+        D and G are determined if the surface is self-affine by all methods with D inside of its interval, if
+        the confidence intervals of D overlap, and if G is determined.
         """
         results = self.select_results_in_direction(direction)
         for result in results:

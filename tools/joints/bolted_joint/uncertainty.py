@@ -33,9 +33,8 @@ MAX_ITERATIONS, RELATIVE_TOLERANCE = 12, 1e-5
 def approach(sample: JointSample, preload: Array) -> Array:
     """Approach (m) [m] of the interface at preloads (m) [N].
 
-    It is the integral of dF/K_zz over the force F of all bolts.
-
-    Below the first point the integrand F/K is a power of F.
+    The approach is the integral of dF/K_zz over the force F of all bolts. Below the first preload, F/K_zz is
+    taken as a power of F.
     """
     end = preload[-1]
     x = np.linspace(-LOG_FORCE_RANGE, 0.0, LOG_FORCE_POINT_COUNT)

@@ -188,7 +188,7 @@ def _rated_and_peak_torque(
 ) -> dict[str, SourcedNumber]:
     """Rated and repeated peak torque of a drive: {column: number with source}.
 
-    Published, else estimated from another series; empty if no series has them.
+    The torques are published, or else estimated from another series; empty if no series has them.
     """
     if series.startswith(ACTUATOR_SERIES):
         return {}
@@ -216,7 +216,7 @@ def _rated_and_peak_torque(
 def _hysteresis_limits(series: str, size: str, ratio: float) -> dict[str, SourcedNumber]:
     """Upper limits of hysteresis and lost motion of a drive: {column: number with source}.
 
-    From actuators of the same size, else the largest of all actuators.
+    The limits are those of actuators of the same size, or else the largest of all actuators.
     """
     step = "30" if ratio < 50.0 else "50" if ratio == 50.0 else "50+"
     rows = [row for row in _read_table("accuracy") if row["ratio"] == step]

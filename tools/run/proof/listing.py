@@ -1,6 +1,6 @@
 """Files by which a tool enters the list of FMI tools: an FMU with inputs and reference results.
 
-They follow the FMI cross-check rules, version 4.1.
+The files follow the FMI cross-check rules, version 4.1.
 
 The folder fmus/VERSION/cs/PLATFORM/TOOL/RELEASE/MODEL contains MODEL.fmu, MODEL_in.csv, MODEL_ref.csv,
 MODEL_ref.opt and README.md. The files describe one experiment that needs no parameter set: the first

@@ -71,7 +71,7 @@ def format_counts(proof: Proof) -> str:
 def format_summary(proof: Proof) -> str:
     """Summary of a proof in one line: experiments that passed, missed, and were not executed.
 
-    It also counts start values that differ.
+    The summary also counts start values that differ.
     """
     excluded = sum(bool(outcome.exclusion_reason) for outcome in proof.outcomes)
     missed = sum(not outcome.has_passed for outcome in proof.outcomes)

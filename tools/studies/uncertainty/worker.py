@@ -174,7 +174,7 @@ class JointRamp:
     def runs_per_process(self) -> int:
         """Number of runs for which one more process is started.
 
-        It is unlimited (no other process) for a joint registered only in this process.
+        For a joint that is registered only in this process, the number is unlimited: no process is started.
         """
         if not KINDS[self.file.joint].package.startswith("jointfmu."):
             return sys.maxsize

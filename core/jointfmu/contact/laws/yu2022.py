@@ -233,7 +233,7 @@ def critical_log_area(law: Yu2022, yield_onset_ratio: float) -> Number:
 def _elastic_plastic_stages(law: Yu2022) -> tuple[tuple[PlasticStage, PlasticStage], tuple[float, float]]:
     """Two elastic-plastic stages, and the limits of plastic and second stage as areas over a_nec(R_m) [1].
 
-    They depend on the choice `plastic_area`, the relation between area a and deformation w of a spot:
+    Stages and limits depend on `plastic_area`, the choice of the relation between area a and deformation w:
 
     geometric    : elastic relation a = f1 pi R_m w, so w/w_nec = a/a_nec(R_m), which is (a/a_nec)^-(D - 1)
                    for D1 = D2; limits 6 and 110 of Eqs. 31-32

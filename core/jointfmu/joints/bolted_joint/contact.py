@@ -150,7 +150,7 @@ def force_transfer(points: PressureDistribution, patches: FrictionPatches) -> Ar
 def pressure_transfer(points: PressureDistribution, patches: FrictionPatches) -> Array:
     """Matrix (m, n) [1] that gives the pressures of the friction patches from those of the contact points.
 
-    It distributes the normal forces as `force_transfer` does.
+    The matrix distributes the normal forces as `force_transfer` does.
     """
     return force_transfer(points, patches) * points.area_share / patches.area_share[:, None]
 

@@ -161,7 +161,7 @@ def elastic_member_sums(
 ) -> dict[str, Number]:
     """Sums of the complete joint in place of those of the interface, for a joint with elastic members.
 
-    These are the stiffness, the bolt elongation and the elastic energy.
+    The sums are the stiffness, the bolt elongation and the elastic energy.
 
     bolt_force  : (b) [N] at tightening
     loop_energy : [J/m2] of the friction patches

@@ -190,7 +190,7 @@ class DriveParameters(ABC):
     def effective_load_loss_back(self) -> Number:
         """Share of the load torque [1] lost by friction if the load drives the motor.
 
-        It is load_loss_back, or load_loss if that is negative.
+        The share is load_loss_back, or load_loss if load_loss_back is negative.
         """
         return select(self.load_loss_back < 0.0, self.load_loss, self.load_loss_back)
 

@@ -102,8 +102,8 @@ def reduce_patches(
 
     start_points : distribution from which the initial patches are selected; None: `distribution`
 
-    Kept to round-off: the sums and first moments of share, preload_pressure_ratio and moment_pressure_ratio
-    (weighted by share), and the second moments of share.
+    The patches keep to round-off: the sums and first moments of share, preload_pressure_ratio and
+    moment_pressure_ratio (weighted by share), and the second moments of share.
 
     Raises ValueError if max_patch_count is too small to keep these sums.
     """

@@ -36,8 +36,8 @@ class BoltedPlate:
     studies/bolted_joint_explanation.py compares p with two elastic plates.
 
     If an edge of the plate or another hole cuts the disc of a bolt, its pressure is multiplied by an
-    exponential function of the position, so that the resultant stays on the axis of the bolt.
-    Valid for flat plates that do not bend, with a thickness of at least about half a bolt diameter.
+    exponential function of the position, so that the resultant stays on the axis of the bolt. The model is
+    valid for flat plates that do not bend, with a thickness of at least about half a bolt diameter.
     """
 
     length: float = quantity_field("m", "length of the plate along x", gt=0.0)

@@ -170,7 +170,7 @@ def _find_points(
 ) -> InterfacePoints:
     """Points of the interface law `table`: stiffness over pressure of the scanned surfaces.
 
-    By boundary elements with `--solve`, else from the tail of the height distribution.
+    With `--solve`, boundary elements give the stiffness; without, the tail of the height distribution.
     """
     names = expand_to_sides("material", args.material)
     assert names is not None  # the option has a default

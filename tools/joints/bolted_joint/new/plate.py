@@ -336,7 +336,7 @@ def _add_bolts(
 def _add_thermal_parameters(parameter_sheet: ParameterSheet, clamped_bolt: ClampedBolt) -> None:
     """Add clamped lengths and expansion of the bolts to the sheet.
 
-    By these, the temperature changes the preload.
+    With these parameters, the temperature changes the preload.
     """
     steel = find_row("materials", "steel")
     alpha, text = steel.numbers["alpha"], "bolts of steel" + (" with washers" if clamped_bolt.washers else "")
