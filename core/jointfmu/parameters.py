@@ -116,7 +116,7 @@ class ParameterFile:
         return self.origins.get(name, "default"), self.sources.get(name, _DEFAULT_SOURCE)
 
     def start_value(self, input_name: str) -> float:
-        """Start value of an input in its SI unit: that of the file, else the default of the joint."""
+        """Start value of an input in its SI unit: stated in the file, else the default of the joint."""
         variable = KINDS[self.joint].variables.get(input_name) if self.joint in KINDS else None
         return self.inputs.get(input_name, variable.start if variable else 0.0)
 

@@ -42,7 +42,7 @@ def second_difference_ratio(H: Number) -> Number:
 
 
 def profile_power_ratio(H: Number) -> Number:
-    """Ratio kappa [1] of the height variance Phi of a profile to that of its isotropic surface.
+    """Ratio kappa [1] of the height variance Phi of a profile to the variance of its isotropic surface.
 
     kappa = mean of |cos a|^(2H) over all directions a = Gamma(H + 1/2)/(sqrt(pi) Gamma(H + 1)). A wave that
     crosses the profile at an angle appears longer in the profile.

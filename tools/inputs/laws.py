@@ -111,8 +111,8 @@ def find_surface_rms_height(
 
     parameters : result of `build_law_parameters` for the same law, file and settings
 
-    If the parameters have no height, it is that of the file. The height of the default file is not used if
-    the settings change the surfaces.
+    If the parameters have no height, the height of the file is used. The height of the default file is not
+    used if the settings change the surfaces.
     """
     h = law_rms_height(parameters)
     if (

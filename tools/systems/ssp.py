@@ -210,7 +210,7 @@ def build_systems(
 
 
 def _check_same_parameters(fmu_path: Path, parameter_file: ParameterFile) -> None:
-    """Raise InputRefusal if an FMU exists and was built from other parameters than those of the file."""
+    """Raise InputRefusal if an FMU exists and its parameters differ from the parameter file."""
     if not fmu_path.exists():
         return
     with archives.open_archive(fmu_path) as archive:

@@ -298,7 +298,7 @@ class PatchFit:
         )
 
     def _work_errors(self, patch_displacement: Array) -> tuple[Array, tuple[Array, MonotonicFriction]]:
-        """Relative errors [1] of the friction of the reduced patches against that at all quadrature points.
+        """Relative errors [1] of the patches' friction against the friction at all quadrature points.
 
         The errors are those of generalised friction forces, of these forces if nothing slips (stick forces),
         and of the losses per cycle, in all states in shear.

@@ -317,7 +317,7 @@ class SumFunctions:
         return out
 
     def sum_deviations(self, reduced_points: PressureDistribution, load_case_sums: LoadCaseSums) -> Array:
-        """Largest deviation (m) [1] in each load case: sums of reduced points minus those of all nodes."""
+        """Largest deviation (m) [1] in each load case: sums of reduced points minus sums of all nodes."""
         approach = (
             self._approach_at_pressure(self._preload_pressure(reduced_points, load_case_sums.load_cases))
             - load_case_sums.opening[:, None]

@@ -271,7 +271,7 @@ class InvoluteGearPair:
         return warnings
 
     def check_centre_distance(self, distance: float) -> None:
-        """Raise ValueError, one line, if a stated centre distance [m] is not that of the profile shifts."""
+        """Raise ValueError, one line, if a stated centre distance [m] contradicts the profile shifts."""
         if abs(distance - self.centre_distance) <= MAX_DISTANCE_ERROR * self.normal_module:
             return
         x1, x2 = self.profile_shifts

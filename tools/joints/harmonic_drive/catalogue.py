@@ -108,7 +108,7 @@ def _stem(drive: CatalogueEntry) -> str:
 
 @cache
 def list_drives() -> tuple[CatalogueEntry, ...]:
-    """All drives of the catalogue: those with a row of stiffness of their own, and those that share a row."""
+    """All drives of the catalogue, with a stiffness row of their own or one that several drives share."""
     torques = {(row["series"], row["size"], row["ratio"]): row for row in _read_table("torque")}
     drives_by_name = {
         item.name: item for row in _read_table("stiffness") for item in _drives_of_row(row, torques)

@@ -157,7 +157,7 @@ Run in {proof.importer} by `jointfmu prove {name}.fmu`: of {len(outcome.worst_po
 
 
 def _list_platforms(fmu: Path, fmi_version: str) -> list[str]:
-    """Platforms for which an FMU contains a binary; for FMI 2.0 only those of FMI2_PLATFORMS."""
+    """Platforms for which an FMU contains a binary; for FMI 2.0 only platforms of FMI2_PLATFORMS."""
     with archives.open_archive(fmu) as archive:
         names = archive.namelist()
         platforms = {match[1] for name in names if (match := re.match(r"binaries/([^/]+)/.", name))}

@@ -88,7 +88,7 @@ def proof_to_json(proof: Proof) -> dict[str, object]:
     """Result of a proof as one JSON object.
 
     A proof repeats the experiments that an FMU contains, and compares each output with its reference. The
-    object has the worst point of each output: that with the largest error over tolerance.
+    object has the worst point of each output: the point with the largest error over tolerance.
     """
     return {
         "fmu": str(proof.fmu),

@@ -240,7 +240,7 @@ def read_study(path: str | Path) -> dict[str, object]:
 
 
 def merge_settings(path: Path | None, stated_settings: Sequence[tuple[str, object]]) -> dict[str, object]:
-    """Settings {name: value} of a study file, if there is one; stated settings replace those of the file."""
+    """Settings {name: value} of a study file, if there is one, replaced by the stated settings."""
     return (read_study(path) if path else {}) | dict(stated_settings)
 
 

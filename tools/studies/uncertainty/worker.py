@@ -192,11 +192,11 @@ class JointRamp:
         return load_curves(KINDS[self.file.joint])
 
     def include_files(self) -> "JointRamp":
-        """Return this evaluator unchanged: it needs no files (that of an FMU packs the FMU)."""
+        """Return this evaluator unchanged: it needs no files (the evaluator of an FMU packs the FMU)."""
         return self
 
     def install_files(self, folder: Path) -> "JointRamp":
-        """Return this evaluator unchanged: it needs no files (that of an FMU unpacks the FMU)."""
+        """Return this evaluator unchanged: it needs no files (the evaluator of an FMU unpacks the FMU)."""
         return self
 
     def run(self, index: int, settings: Settings) -> Entry:

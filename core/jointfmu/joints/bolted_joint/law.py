@@ -365,7 +365,8 @@ def working_preload(joint: AnyBoltedJoint, preload: Number) -> Number:
 
 
 def thermal_mismatch(joint: AnyBoltedJoint, temperature: Number) -> Number:
-    """Free expansion (...) [m] of the clamped members minus that of a bolt, at temperatures (...) [K].
+    """Free expansion (...) [m] of the clamped members minus free expansion of a bolt, at temperatures (...)
+    [K].
 
     Washers expand as the bolt does.
     """

@@ -159,7 +159,7 @@ def elastic_member_sums(
     bolt_force: Array,
     loop_energy: Number,
 ) -> dict[str, Number]:
-    """Sums of the complete joint in place of those of the interface, for a joint with elastic members.
+    """Sums of the complete joint, which replace sums of the interface if the members are elastic.
 
     The sums are the stiffness, the bolt elongation and the elastic energy.
 

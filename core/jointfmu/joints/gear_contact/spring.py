@@ -16,7 +16,7 @@ from ...quantity import Array, Number, quantity_field
 
 @dataclass(frozen=True, kw_only=True)
 class GearContactParameters(Yu2022):
-    """Parameters of the gear contact: those of the law of Yu 2022."""
+    """Parameters of the gear contact with the law of Yu 2022: the parameters of this law."""
 
 
 @dataclass(frozen=True, kw_only=True)

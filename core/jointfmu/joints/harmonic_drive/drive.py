@@ -41,7 +41,7 @@ MAX_TEMPERATURE_COEFFICIENT = 0.2
 
 @dataclass(frozen=True, kw_only=True)
 class DriveParameters(ABC):
-    """Parameters of a harmonic drive except those of its midline: torque over wind-up without hysteresis."""
+    """Parameters of a harmonic drive except the midline (torque over wind-up without hysteresis)."""
 
     ratio: float = quantity_field(
         "1", "speed ratio of wave generator and output; negative: they turn in opposite senses; not 0"

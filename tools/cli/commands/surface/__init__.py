@@ -190,7 +190,7 @@ def _find_points(
 
 
 def _check_rms_heights(identified_surface: "Identification", accept_any_height: bool) -> None:
-    """Raise ValueError for rms heights above those of any machined surface: most often the unit is wrong."""
+    """Raise ValueError for rms heights that no machined surface has; most often the unit is wrong."""
     for name, scan in zip(identified_surface.file_names, identified_surface.scans, strict=True):
         if scan.rms_height > MAX_RMS_HEIGHT and not accept_any_height:
             raise InputRefusal(

@@ -158,7 +158,7 @@ def make_joint(options: DrawingOptions) -> NewJoint:
 
 
 def _hole_diameter(options: DrawingOptions, thread: Thread) -> tuple[float, tuple[str, str]]:
-    """Diameter [m] of the clearance hole: stated, or that of the thread."""
+    """Diameter [m] of the clearance hole: stated, or from the table of threads."""
     if options["hole"] is None:
         return thread.hole, ("standard", f"{thread_source('hole')} for {thread.name}")
     return parse_value("hole", options["hole"]), ("user", "stated on the drawing")

@@ -48,7 +48,7 @@ RAD_PER_ARCMIN = COLUMN_UNITS["angle"]["arcmin"]
 
 
 def wind_up(drive: DriveParameters, torque: Array) -> Array:
-    """Wind-up (...) [rad] of a drive without hysteresis at torques (...) [N.m], equal to that of its FMU."""
+    """Wind-up (...) [rad] of a drive without hysteresis at torques (...) [N.m], equal to its FMU's output."""
     return torque_curve(drive).odd_inverse(torque)
 
 

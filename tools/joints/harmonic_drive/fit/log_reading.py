@@ -331,7 +331,7 @@ def _joint_torque(
 ) -> Array:
     """Torque (n) [N.m] at the joint of a log without a torque of the motor.
 
-    Raises ValueError if there is none, or if the user has not stated that the torque is that at the joint.
+    Raises ValueError if there is no torque, or if the user has not stated that it is measured at the joint.
     """
     wanted = columns.format_heading({name: COLUMN_UNITS[name] for name in ("tau", "i")})
     if "link_torque" in columns_by_name:
