@@ -1,8 +1,7 @@
 """Write the pictures of README and docs: `python build_fmus.py && python docs/figures.py`.
 
-`python docs/figures.py house` needs no FMUs: it draws the packages and layers from pyproject.toml; no more
-does `python docs/figures.py examples`, which runs the scripts in `examples`, nor `elastic`, the arm on its
-drives.
+Three arguments write single pictures and need no FMUs: `house` (packages and layers from pyproject.toml),
+`examples` (pictures of the scripts in `examples`) and `elastic` (the arm on its drives).
 """
 
 import io
@@ -152,7 +151,7 @@ def _inside() -> set[str]:
 
 
 def _storey(axes: Axes, top: float, layers: Sequence[Sequence[str]], running: set[str]) -> None:
-    """Draw a package: a row for each layer, downwards from `top`."""
+    """Draw a package: a row for each layer, from y = `top` downwards."""
     for i, names in enumerate(layers):
         y = top - ROW * (i + 1)
         colours = [RED if name == "joints" else BLUE if name in running else "black" for name in names]

@@ -231,7 +231,7 @@ def over_both():
 
 
 def worked_examples():
-    """Print worked examples: efficiency at part load from that at rated torque, with the usual load loss."""
+    """Print worked examples: efficiency at part load, from efficiency at rated torque and usual load loss."""
     rows = []
     for name in ("FR-40-160", "HFUC-20-80", "SHG-20-80"):
         ((_, full),) = published_points(name, "efficiency").items()
@@ -263,8 +263,7 @@ def scaling():
 
 
 def robot():
-    """Print the measured friction of a robot's base joint, that of its catalogue drive, and predictions for
-    the other joints."""
+    """Print the friction of a robot's base joint, measured and by catalogue; predict the other joints."""
     base, rows = measured_friction(), []
     print(f"\nDrag that fits the base joint best: {fit_drag():.4f} N m at 20 degrees C.")
     rows.append(("base joint, measured", *(f"{1e3 * x:.0f}" for x in base)))

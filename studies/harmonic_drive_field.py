@@ -3,9 +3,9 @@
     python studies/harmonic_drive_field.py [SECTION ...] [--plot FILE]
 
 checks    : closed forms and convergence
-fields    : the pressure over the torque, beside the default of the drive
+fields    : the pressure over the torque, and the default parameters of the drive
 forces    : forces that the published peak pressure would need
-published : torsional stiffness beside the published numbers
+published : torsional stiffness compared with the published numbers
 variants  : the estimates, varied one by one
 picture   : the field over the angle, into --plot FILE (on request)
 """

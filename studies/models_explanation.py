@@ -47,7 +47,7 @@ plate_joint = cache(PlateJoint.of)
 
 
 def print_stiffness(_: argparse.Namespace) -> None:
-    """Print the stiffness of the reduced joint over that of finite elements."""
+    """Print the stiffness of the reduced joint over the stiffness of finite elements."""
     heading("", "attached", *AXES)
     for attached in ATTACHMENTS:
         found, expected = stiffnesses(plate_joint(attached))
@@ -55,7 +55,7 @@ def print_stiffness(_: argparse.Namespace) -> None:
 
 
 def first_loading(joint: PlateJoint, count: int) -> Array:
-    """Deviation (5, levels) [1] of the force from that of a joint with all compliances of `count` cells.
+    """Deviation (5, levels) [1] of the force from a joint with all compliances of `count` cells.
 
     Along x, y, z, about y, z; over the force of gross slip or opening.
     """

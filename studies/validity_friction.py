@@ -35,7 +35,13 @@ COARSE = 64
 
 @dataclass(frozen=True)
 class Surface:
-    """Rough surface that is sheared along x and along y."""
+    """Generated rough surface, and the comparison of its contact with the prediction under shear.
+
+    hurst    : Hurst exponent
+    roll_off : side of the surface over the longest wave
+    nu       : Poisson's ratio
+    stretch  : factor by which waves are shorter along x than along y
+    """
 
     hurst: float
     roll_off: int

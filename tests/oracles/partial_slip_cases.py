@@ -146,7 +146,7 @@ def slider_loop_areas(curve, ratio, amplitudes):
 
 
 def heights(hurst, roll_off, seed, points=POINTS, stretch=1):
-    """Heights of a rough square with waves up to side/roll_off, `stretch` times shorter along x."""
+    """Heights of a rough square of side 1 with waves up to side/roll_off, `stretch` times shorter along x."""
     band = (1.0 / roll_off, SPACINGS_PER_WAVE * stretch / points)
     z = rough_surfaces.periodic(1.0, points, 3.0 - hurst, 1e-6, band, seed).z
     return z[(stretch * np.arange(points)) % points]

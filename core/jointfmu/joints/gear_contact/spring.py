@@ -35,7 +35,8 @@ class TableGearContactParameters(TableLaw):
     def real_area(self, pressure: Number) -> tuple[Number, Number]:
         """Real area (...) [m2] at pressures (...) [Pa] and its elastic fraction [1].
 
-        A table does not contain the area: it is that of spots that all yield, load over hardness.
+        A table of the stiffness does not contain the area. It is taken as load over hardness, as if all spots
+        yield.
         """
         return self.A_0 * pressure / self.H, 0.0 * pressure
 

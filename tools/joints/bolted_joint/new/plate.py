@@ -356,7 +356,7 @@ def _add_embedding_loss(
     clamped_bolt: ClampedBolt,
     height_range: faces.HeightRange | None,
 ) -> float:
-    """Add the preload loss [N] by embedding to the sheet, and return it."""
+    """Add the preload loss [N] by embedding to the parameter sheet, and return it."""
     if options["embedding"] is not None:
         stated = parse_quantity("embedding", options["embedding"])
         parameter_sheet.add_drawing_number("embedding", stated)
