@@ -216,7 +216,7 @@ class Bolted:
         return abs(self.tight + float(self.load(-x[2])) - self.last[4]) - CHANGED * self.tight
 
     def run(self, tolerance, stop):
-        """Numbers of steps, right-hand sides (except for Jacobians), Jacobians, states and events of a run."""
+        """Numbers of steps, right-hand sides (not for Jacobians), Jacobians, states and events of a run."""
         amplitude = np.array(AMPLITUDES) * self.reach
         x = np.concatenate([[0.0, amplitude[1], 0.0], amplitude * self.rate * [1.0, 0.0, 1.0]])
         usual = np.concatenate([self.reach, self.reach * self.rate])
