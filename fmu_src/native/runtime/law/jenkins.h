@@ -96,7 +96,7 @@ enum { MAPPING_FORCE, MAPPING_LOSS = 5, MAPPING_SLIP, N_MAPPING };
  * change. */
 void sliders_return_map(bool use_avx, int first, int end, const Sliders2D *s, double *const results[N_MAPPING],
                         bool forces_only);
-/* Sum of such results. */
+/* Sum of results of `sliders_return_map`. */
 void sliders_resultant(bool use_avx, int first, int end, const Sliders2D *s, double *const results[N_MAPPING],
                        SliderResultant *sum);
 
