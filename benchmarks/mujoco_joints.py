@@ -217,7 +217,7 @@ def initial_states(model: mujoco.MjModel, count: int) -> np.ndarray:
 
 
 def print_throughput(hysteresis: float | None, quick: bool) -> None:
-    """Print the processor time per environment and step, over that of the rigid arm."""
+    """Print the processor time per environment and step, over the time of the rigid arm."""
     count, rounds = (QUICK_ENVIRONMENTS, 1) if quick else (ENVIRONMENTS, ROUNDS)
     with tempfile.TemporaryDirectory() as folder:
         made = arm_models(Path(folder), hysteresis)
@@ -254,7 +254,7 @@ MIN_REAL_TIME_RATIO, MAX_START_TIME = 20.0, 5e-3
 
 
 def print_robot(quick: bool) -> None:
-    """Print the processor time of the equations of a robot's FMU, over that of the plain MuJoCo model."""
+    """Print the processor time of the equations of a robot's FMU, over the time of the plain MuJoCo model."""
     spec = elastic.read_robot(ROBOT)
     spec.option.timestep = STEP
     files = {f"joint{i}": drive(size).file for i, size in enumerate(SIZES, 1)}

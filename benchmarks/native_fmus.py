@@ -327,7 +327,7 @@ def cell(found: Times, key: str) -> str:
 
 
 def print_elastic_sides(folder: Path, quick: bool) -> None:
-    """Print times of the README's bolted joint with elastic sides over those with rigid sides."""
+    """Print times of the README's bolted joint with elastic sides over its times with rigid sides."""
     from oracles.joint_elements import PlateJoint, stiffnesses
 
     joint = PlateJoint.of("faces")

@@ -128,7 +128,7 @@ def forces():
 
 
 def cup():
-    """Print the stiffness of the cup against ovalling, over that of the rings in its contact.
+    """Print the stiffness of the cup against ovalling, over the stiffness of the rings in its contact.
 
     Rayleigh's deformation without stretching, w (1 - z/L) cos(2 theta): bending by 3 w/r^2 around and
     twist by 3/2 w/(r L), energy D/2 (bending^2 + 2 (1 - nu) twist^2), one wall throughout.

@@ -4,8 +4,8 @@ elements.
     python studies/models_explanation.py [SECTION ...] [--cells N] [--paths N]
 
 stiffness     : reduced joint over finite elements, each motion alone, other motions held
-first-loading : force up to slip and opening, less that with all compliances of the cells, over the largest
-                force
+first-loading : force up to slip and opening, less the force with all compliances of the cells, over the
+                largest force
 poles         : force in gross slip about poles inside the contact, compared with all nodes
 closed-paths  : smallest work over heat on closed paths in six directions, through the FMU
 """

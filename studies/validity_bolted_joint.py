@@ -194,7 +194,7 @@ def friction_deviations(
     """Format deviations of the reduced joint from finite elements with friction (`full`).
 
     The force deviations are relative to the largest force on first loading. The heat of a cycle is relative
-    to that of the finite elements.
+    to the heat by finite elements.
     """
     most = np.max(np.abs(full["first"][0]))
     first = np.max(np.abs(found["first"][0] - full["first"][0])) / most

@@ -252,7 +252,7 @@ def _draw_ramp(model: Model, tabulated_joint: TabulatedJoint, start_values: Mapp
 
 
 def draw_further_charts(model: Model, tabulated_joint: TabulatedJoint) -> dict[str, str]:
-    """{name: HTML element} of the charts of an FMU's page, except those of the load ramp."""
+    """{name: HTML element} of the charts of an FMU's page, except charts of the load ramp."""
     drawings = find_fmu_parts(model).chart_drawings.get(model.name, {})
     return {
         name: chart.make_figure(panels(tabulated_joint, model.ramp.end_value))

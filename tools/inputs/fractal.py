@@ -35,8 +35,8 @@ def structure_constant(H: Number) -> Number:
 def second_difference_ratio(H: Number) -> Number:
     """Ratio V/S = 4 - 4^H [1] of two structure functions of heights, for a power law S(tau) ~ tau^(2 H).
 
-    S is the mean square of the first difference of heights at the lag tau, V(tau) = 4 S(tau) - S(2 tau) that
-    of the second difference.
+    S is the mean square of the first difference of heights at the lag tau, V(tau) = 4 S(tau) - S(2 tau) the
+    mean square of the second difference.
     """
     return 4.0 - 4.0**H
 

@@ -209,7 +209,7 @@ def evaluate_at_log_area(law: InterfaceLaw, largest_log_area: Number) -> dict[st
 def evaluate_at_pressure(law: InterfaceLaw, pressure: ArrayLike) -> dict[str, Number]:
     """Contact quantities of the nominal area A_0 at nominal pressures (...) [Pa].
 
-    The result has the same quantities as that of `evaluate_at_log_area`: load, stiffness, area, ...
+    The result has the quantities of `evaluate_at_log_area`: load, stiffness, area, ...
     """
     return evaluate_at_log_area(law, solve_largest_spot(law, pressure))
 

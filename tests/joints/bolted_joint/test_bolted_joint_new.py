@@ -761,7 +761,7 @@ def test_the_fmu_of_a_drawing_is_the_package(capsys, tmp_path):
 @pytest.mark.slow
 def test_a_computed_field_is_near_the_cones(capsys, tmp_path, enter):
     """The field by finite elements of three times the size, whose error is far below the tolerance, is near
-    that of the cones."""
+    the field of the cones."""
     enter(coarse.elements(BoltedContact, 0.35))
     files = {}
     for field in ("cones", "computed"):

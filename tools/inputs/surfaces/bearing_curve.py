@@ -170,7 +170,7 @@ class BearingCurve:
         return float(low), float(high)
 
     def stiffness_table(self, modulus: float, points: int = 16) -> tuple[Array, Array]:
-        """Pressures [Pa] and stiffness [Pa/m] of the law `table`, which must not fall.
+        """Pressures [Pa] and stiffness [Pa/m] of the law `table`, whose stiffness is not allowed to decrease.
 
         The pressures go up to MAX_SECTION_AREA_SHARE.
         """

@@ -59,7 +59,7 @@ def loss_factor(sample: JointSample, preload: Array) -> Array:
     The amplitude of the shear force is LOOP_SHEAR_OVER_BOLT_FORCE of the force of all bolts.
 
     The FMU gives the loss factor of a loop with the present displacement as its amplitude. Newton's method
-    finds the displacement of the shear force, from that of a virgin curve with the same initial stiffness and
+    finds the displacement at the shear force. It starts on a virgin curve with the same initial stiffness and
     friction limit, for a pressure p ~ approach^START_EXPONENT.
     """
     loads, parameters = preload[-1] * LOOP_LOADS_OVER_RAMP_END, sample.parameters

@@ -209,7 +209,7 @@ class InvoluteGearPair:
         """Damping [N.s/m] along the line of action: 2 DAMPING_RATIO sqrt(stiffness mass).
 
         mesh_stiffness : [N/m] of the mesh
-        densities      : [kg/m3] of both wheels; mass is that of both wheels in series, as solid discs,
+        densities      : [kg/m3] of both wheels; the mass is of both wheels in series, as solid discs,
                          reduced to the line of action
         """
         masses = [

@@ -214,7 +214,7 @@ def yield_onset_parameter(law: Yu2022) -> Number:
 def critical_log_area(law: Yu2022, yield_onset_ratio: float) -> Number:
     """Log-area ln a [ln m2] of the spot with a given value of a (1/R_x + 1/R_y)^2, Eqs. 28, 31, 32.
 
-    yield_onset_ratio : this value over that at the onset of yield [1], see `yield_onset_parameter`
+    yield_onset_ratio : this value over its value at the onset of yield [1], see `yield_onset_parameter`
 
     Newton's method in ln a. The function is convex and decreases with a slope between 1 - max(D) and
     1 - min(D), so twelve steps reach round-off.

@@ -97,7 +97,7 @@ class JointInputs(NamedTuple):
 
     @property
     def input_summary(self) -> str:
-        """Inputs that are not zero, and a temperature that is not that of tightening, as text; without
+        """Inputs that are not zero, and a temperature other than at tightening, as text; without
         rates."""
         names = ("preload", "moment", "s_rel_x", "s_rel_y", "s_rel_z", "theta_x", "theta_y", "theta_z")
         values = dict(zip(names, (self.preload, self.moment, *self.displacement), strict=True))

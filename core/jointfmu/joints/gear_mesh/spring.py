@@ -234,7 +234,7 @@ def pairs_in_contact(
 
     Each transverse section of a helical mesh is a spur mesh, see `_pairs_in_section`. The phases of the
     sections are spread evenly over `overlap_ratio` cycles, so the number of pairs is the mean over this
-    range. Its mean over a cycle stays the contact ratio; its fluctuation is smaller than that of a spur mesh.
+    range. Its mean over a cycle stays the contact ratio; its fluctuation is smaller than in a spur mesh.
     """
     helical = overlap_ratio > _MIN_OVERLAP_RATIO
     length = np.where(helical, overlap_ratio, 1.0)

@@ -12,7 +12,7 @@ fitted: to the friction of rigid motions of the tilted contact for laws p ~ delt
 poles at loaded nodes. The sums that `reduce_points` keeps to round-off are kept here too.
 
 The fit uses rounded numbers (`reproducible`), so its result is the same on every processor.
-studies/fields_explanation.py prints the deviation of the friction from that of all nodes.
+studies/fields_explanation.py prints the deviation of the friction from friction at all nodes.
 """
 
 from dataclasses import dataclass, replace

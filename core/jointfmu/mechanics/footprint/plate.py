@@ -166,9 +166,9 @@ def has_one_bolt_row(plate: BoltedPlate) -> bool:
 def equivalent_bolt_rows(bolt_y: Array) -> tuple[float, float]:
     """Equivalent pair of bolt rows: bolts per row N_b [1] and distance L_a [m], for bolts at y (n) [m].
 
-    A moment changes the force of a bolt in the equivalent rows by as much as that of the outermost bolts. N_b
-    is the number of outermost bolts, L_a = sum(y^2)/(N_b max|y|), y from the centre. For two equal rows L_a
-    is their distance.
+    A moment changes the force of a bolt in the equivalent rows as much as the force of the outermost bolts.
+    N_b is the number of outermost bolts, L_a = sum(y^2)/(N_b max|y|), y from the centre. For two equal rows
+    L_a is their distance.
     """
     distances = bolt_y - np.mean(bolt_y)
     max_distance = float(np.max(np.abs(distances)))
