@@ -1,4 +1,4 @@
-"""Time of the first build of an FMU, which compiles, over that of variants, which use the compiled model.
+"""Time of the first build of an FMU, which compiles, over the time of variants, which use the compiled model.
 
     python benchmarks/build.py [--quick]
 

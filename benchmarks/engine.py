@@ -5,7 +5,8 @@
 The joint is the plate of the README. The path of POINTS points is followed in one process, also with the FMU
 step by step in fmpy; the shortest of ROUNDS times counts. Each command is a process of its own, from start to
 end; one run before it compiles what is missing, and writes points and patches of the contact to the cache.
-`new` computes points and patches in every run. Seconds of the clock, then of the processors in brackets.
+`new` computes points and patches in every run. The table has elapsed times [s], and processor times [s] in
+brackets.
 """
 
 import argparse

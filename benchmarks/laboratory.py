@@ -1,13 +1,12 @@
-"""Time of the laboratory page to redraw when a slider moves, in headless Chromium; and pictures of its pages.
+"""Time that the laboratory page needs to redraw after a slider moves, in headless Chromium; and pictures.
 
     python benchmarks/laboratory.py [--quick] [--pictures DIR]
 
 The time runs from the event of the slider to the end of the frame that shows the change: script, layout and
-                                                                                          painting.
-It is measured for every joint with its first path, on a desktop (1400 x 1000) and on a phone (390 x 800, with
-a processor that Chromium makes four times slower), with the curves or the path in view. The changes come at
-random moments, as from a hand, so work outside the view delays them. Up to 17 ms are the wait for the next
-frame. The first change is left out.
+painting. The time is measured for every joint with its first path, on a desktop (1400 x 1000) and on a phone
+(390 x 800, with a processor that Chromium makes four times slower), with the curves or the path in view. The
+changes come at random moments, as from a hand, so work outside the view delays them. The time includes up to
+17 ms of waiting for the next frame. The first change is left out.
 """
 
 import argparse

@@ -8,11 +8,12 @@ plugin     : a row of links on locked motors, each driven by a sine; the steps r
              is a Python callback that sets the inputs of each FMU by fmpy and reads its torques.
 throughput : 4096 environments of a six-axis arm that fall from random poses, in MuJoCo's own rollout on two
              cores: the rigid arm; the rigid arm with the friction of the motors, each a constraint; elastic
-                    joints in plain
-             MJCF, with and without this friction; elastic joints by the plugin, with friction. Damping is
-             explicit (`eulerdamp` is off) except where stated. Shortest processor times of rounds in turn.
+             joints in plain MJCF, with and without this friction; elastic joints by the plugin, with
+             friction. Damping is explicit (`eulerdamp` is off) except where stated. The models are timed in
+             turn for several rounds; the shortest processor time counts.
 robot      : the equations of a six-axis arm as one FMU, all effects of its drives on, motors driven by sines;
-             time of its initialization and of its steps, beside MuJoCo's steps of the plain elastic model
+             time of its initialization and of its steps, compared with MuJoCo's steps of the plain elastic
+             model
 """
 
 import sys
@@ -216,7 +217,7 @@ def initial_states(model: mujoco.MjModel, count: int) -> np.ndarray:
 
 
 def print_throughput(hysteresis: float | None, quick: bool) -> None:
-    """Print the processor time per environment and step, over that of the rigid arm."""
+    """Print the processor time per environment and step, over the time of the rigid arm."""
     count, rounds = (QUICK_ENVIRONMENTS, 1) if quick else (ENVIRONMENTS, ROUNDS)
     with tempfile.TemporaryDirectory() as folder:
         made = arm_models(Path(folder), hysteresis)
@@ -253,7 +254,7 @@ MIN_REAL_TIME_RATIO, MAX_START_TIME = 20.0, 5e-3
 
 
 def print_robot(quick: bool) -> None:
-    """Print the processor time of the equations of a robot's FMU, over that of the plain MuJoCo model."""
+    """Print the processor time of the equations of a robot's FMU, over the time of the plain MuJoCo model."""
     spec = elastic.read_robot(ROBOT)
     spec.option.timestep = STEP
     files = {f"joint{i}": drive(size).file for i, size in enumerate(SIZES, 1)}

@@ -1,25 +1,22 @@
-"""Times of the calls of native FMUs in a C host, over an FMU that passes its inputs on, and the python
-flavour.
+"""Times of calls of native FMUs in a C host, compared with an FMU that passes its inputs on and with fmpy.
 
     python benchmarks/native_fmus.py [--quick] [--worst | --elastic-sides]
 
-For Linux on x86_64. The libraries are built as for users; the host (native_fmus.c) has the same compiler. A
-cycle sets
-all inputs, does one step and reads all outputs, with other inputs each time: on a smooth trajectory with
-                                                                              constant
-preload and moment, on one where only the first other input moves, on one where the preload moves too, and at
-random over the range of the tables. The bolted joint has six degrees of freedom on the smooth trajectory, and
-no tilt on the second.
+For Linux on x86_64. The libraries are built as for users, and the host (native_fmus.c) by the same compiler.
+A cycle sets all inputs, does one step and reads all outputs. The inputs change in each cycle, on one of four
+trajectories: smooth with constant preload and moment; smooth with one moving input; smooth with a moving
+preload; at random over the range of the tables. The bolted joint moves in six degrees of freedom on the first
+trajectory, and does not tilt on the second.
 
-"x PassThrough" : smooth cycle over that of an FMU that passes two inputs on to two outputs with the same
-                  runtime
+"x PassThrough" : time of a smooth cycle over the time of a cycle of an FMU with the same runtime that passes
+                  two inputs on to two outputs
 "step"          : doStep with changed inputs; "no change": with the inputs of the step before
 "derivative"    : one directional derivative of all outputs along all inputs
 "start"         : from instantiation to the end of initialization
-"memory"        : of an instance
+"memory"        : memory of an instance
 
-Medians; the targets stand below. `--worst` times a million random steps of each FMU one by one.
-`--elastic-sides` compares the bolted joint with elastic sides with the same joint with rigid sides.
+The times are medians; the targets stand below the table. `--worst` times a million random steps of each FMU
+one by one. `--elastic-sides` times the bolted joint with elastic and with rigid sides.
 """
 
 import platform
@@ -74,7 +71,7 @@ RANGES = {name: dict(case.numbers.span) for name, case in CASES.items()} | {
     name: {f"u{i}": (-1, 1) for i in range(n)} for name, (n, _) in PASS_THROUGH.items()
 }
 RANGES |= {label: RANGES[name] for label, (name, _) in DRIVES_WITH_LOSSES.items()}
-"""Ranges of the inputs, those of the tables."""
+"""Ranges {name in the table: {input: (lowest, highest)}}: for joints, the ranges of their tables."""
 CONSTANT = ("preload", "moment")
 """Inputs that are constant along the input path: a joint is tightened once."""
 
@@ -100,9 +97,13 @@ Ranges = Mapping[str, tuple[float, float]]
 
 
 def trajectories(ranges: Ranges) -> dict[str, np.ndarray]:
-    """Input paths (ROWS, n): smooth; one input moving; preload moving too; constant moment; random.
+    """Input paths {name: (ROWS, n)} within the ranges {input: (lowest, highest)}.
 
-    An oscillation takes about 64 steps.
+    smooth     : oscillations of about 64 steps; preload and moment are constant
+    straight   : only the first input oscillates
+    tightening : the preload oscillates too; the moment is zero
+    bent       : preload and moment oscillate too
+    random     : independent random values
     """
     low, high = np.array(list(ranges.values()), dtype=float).T
     phase = 2.0 * np.pi / 64.0 * np.arange(ROWS)[:, None]
@@ -158,7 +159,7 @@ class Linked(NamedTuple):
 
 
 def as_built(name: str) -> Linked:
-    """Libraries of an FMU with default parameters, or of one of OTHERS."""
+    """Libraries of an FMU as users build it: default parameters, or an entry of DRIVES_WITH_LOSSES."""
     own, changes = DRIVES_WITH_LOSSES.get(name, (name, {}))
     file = load_default(MODELS[own].joint).with_values(changes, "user", "benchmark")
     model = MODELS[own].with_parameters(file.joint, file.values)
@@ -170,7 +171,7 @@ def as_built(name: str) -> Linked:
 
 
 def as_compiled(name: str) -> Linked:
-    """Libraries of an FMU whose outputs are its inputs."""
+    """Libraries of an FMU of PASS_THROUGH."""
     files = pass_through(name)
     units = {flavour: compiler.select_source_files(list(files), flavour[-1]) for flavour in NATIVE}
     made = {f: compiler.compile_libraries(name, files, u, [PLATFORM])[PLATFORM] for f, u in units.items()}
@@ -326,7 +327,7 @@ def cell(found: Times, key: str) -> str:
 
 
 def print_elastic_sides(folder: Path, quick: bool) -> None:
-    """Print times of the README's bolted joint with elastic sides over those with rigid sides."""
+    """Print times of the README's bolted joint with elastic sides over its times with rigid sides."""
     from oracles.joint_elements import PlateJoint, stiffnesses
 
     joint = PlateJoint.of("faces")

@@ -1,17 +1,15 @@
-"""One FMU of a system over the archive of separate FMUs, both in fmpy: deviation and time.
+"""One FMU of a system compared with the archive of separate FMUs, both in fmpy: deviation and time.
 
     python benchmarks/systems.py [--quick] [--worst]
 
-First table: largest deviation of an output from model exchange (CVode, tight tolerance) over the largest
-             value, of the
-FMU at communication steps of 1 ms and 10 ms, and of the archive at the interval of the system. Second table:
-times of runs of the FMU, of the archive at this interval, and of the archive at the longest step, halved from
-it, with which the outputs are within 0.5 % as well. All times include loading; those of the archive include
-unpacking.
+The first table has the largest deviation of an output from model exchange (CVode, tight tolerance), over the
+largest value of the output: for the FMU at communication steps of 1 ms and 10 ms, and for the archive at the
+interval of the system. The second table has run times: of the FMU, of the archive at this interval, and of
+the archive at the longest step that keeps its outputs within 0.5 % too (the interval, halved until they are).
+All times include loading, and for the archive unpacking.
 
-With `--worst`: processor times of a million communication steps under random loads on the bodies, from rest
-                again
-after a thousand steps.
+With `--worst`: processor times of a million communication steps under random loads on the bodies; every
+thousand steps start again from rest.
 """
 
 import tempfile

@@ -1,8 +1,7 @@
 """Write the pictures of README and docs: `python build_fmus.py && python docs/figures.py`.
 
-`python docs/figures.py house` needs no FMUs: it draws the packages and layers from pyproject.toml; no more
-does `python docs/figures.py examples`, which runs the scripts in `examples`, nor `elastic`, the arm on its
-drives.
+Three arguments write single pictures and need no FMUs: `house` (packages and layers from pyproject.toml),
+`examples` (pictures of the scripts in `examples`) and `elastic` (the arm on its drives).
 """
 
 import io
@@ -138,7 +137,7 @@ def svg(draw: Callable[[Figure], None], size: tuple[float, float], layout: str |
 
 
 def _layers(package: str) -> list[list[str]]:
-    """Layers of a package from above, the names that stand beside each other in a row."""
+    """Layers of the package from the top; each row has the names of modules of one layer."""
     tools = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]
     contract = next(c for c in tools["importlinter"]["contracts"] if c.get("containers") == [package])
     rows = [layer.split(" | ") for layer in contract["layers"]]
@@ -152,7 +151,7 @@ def _inside() -> set[str]:
 
 
 def _storey(axes: Axes, top: float, layers: Sequence[Sequence[str]], running: set[str]) -> None:
-    """Draw a package: a row for each layer, downwards from `top`."""
+    """Draw a package: a row for each layer, from y = `top` downwards."""
     for i, names in enumerate(layers):
         y = top - ROW * (i + 1)
         colours = [RED if name == "joints" else BLUE if name in running else "black" for name in names]

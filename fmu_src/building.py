@@ -36,7 +36,7 @@ def build_fmus(
     """Build FMUs into `out/FLAVOUR/NAME.fmu` and return their paths.
 
     fmu_names   : FMUs to build; if empty: all FMUs of the joint of `parameters`, or of all joints
-    parameters  : None: the default parameter file of each joint
+    parameters  : parameter file; None: the default file of each joint
     variability : FMI variability of all parameters, one of VARIABILITIES
     alias       : name of the FMU instead of its own; only for a single FMU
     pool        : processes that build in parallel; None: build in this process

@@ -2,10 +2,10 @@
 
     python studies/bolted_joint_explanation.py [SECTION ...]
 
-pressure    : share of the force inside circles around the bolts, radius of gyration, stiffness: cones of VDI
-              2230 beside finite elements of the plates
-attachments : stiffness of the README's joint with its plates and bolts, by attachment, beside its interface
-              alone
+pressure    : share of the force inside circles around the bolts, radius of gyration and stiffness, by cones
+              of VDI 2230 and by finite elements of the plates
+attachments : stiffness of the README's joint with plates and bolts, for each attachment, and stiffness of its
+              interface alone
 """
 
 import tempfile
@@ -119,7 +119,7 @@ STIFFNESSES = ("xx", "yy", "zz", "rx", "ry", "rz")
 
 
 def joint_facts(attached: str, example: dict[str, object]) -> dict[str, float]:
-    """Results {name: value} that `jointfmu new bolted-joint` prints."""
+    """Results {name: value} that `jointfmu new bolted-joint` prints for an attached or clamped joint."""
     options = (
         dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.options) | example | {"attached": attached}
     )

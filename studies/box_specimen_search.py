@@ -1,11 +1,9 @@
-"""Fits of the box specimen of Zhao 2018 to its six frequencies, from random lengths and with each choice of
-the law.
+"""Fits of lengths of the box specimen of Zhao 2018 to its six frequencies, with each choice of the law.
 
-Part of finite_elements_explanation.py. The bricks are coarse, and the pressure around the bolts decays as in
-the
-default parameters of the joint: a fit takes half a minute. Six lengths: those of oracles.box_specimen and a
-                                 ledge
-inside the walls. A closed box has a seventh length, that of its floor.
+Part of finite_elements_explanation.py. Each fit starts at random lengths. The bricks are coarse, and the
+pressure around the bolts decays as in the default parameters of the joint, so that a fit takes half a minute.
+Six lengths are fitted: the lengths of oracles.box_specimen, and a ledge inside the walls. A closed box has a
+seventh length, the thickness of its floor.
 """
 
 from collections.abc import Iterator, Sequence
@@ -47,7 +45,7 @@ CASES = [
 
 @dataclass(frozen=True)
 class Box:
-    """Half of the box specimen with its contact; `bolts` (8, 2) [m]."""
+    """Half of the box specimen with its contact; `bolts` (8, 2) [m]: positions of the bolts."""
 
     body: ElasticBody
     interface: ContactInterface
@@ -91,7 +89,7 @@ class Box:
         return normal, float(replace(joint, critical_area="continuity").shear_stiffness_ratio()) * normal
 
     def modes(self, joint: BoltedJointParameters, force: float) -> NaturalModes:
-        """Six lowest modes of two such halves."""
+        """Six lowest modes of the whole box: two halves in contact."""
         return compute_modes((self.body,), self.interface, *self.springs(joint, force))
 
     def squares(self, joint: BoltedJointParameters, force: float, found: NaturalModes) -> Array:
@@ -109,8 +107,7 @@ class Box:
 
 
 def _line(places: Array) -> Array:
-    """Grid lines [m] in ascending order at both signs of the given distances, with divisions of the opening
-    between."""
+    """Ascending grid lines [m] at plus and minus the given distances, with the opening divided."""
     right = _steps(
         np.concatenate([[0.0], places]),
         [BRICKS_ALONG_HALF_OPENING, BRICKS_ACROSS_WALL, BRICKS_ACROSS_WALL, BRICKS_ACROSS_WALL],

@@ -66,17 +66,21 @@ def pressure_length(r_m):
 
 
 def ratio():
-    """Stiffness ratio K_T/K_N [1] of a spot at half of the friction limit, Eqs. 29 and 39."""
+    """Stiffness ratio K_T/K_N [1] of a spot under half of the friction limit, Eqs. 29 and 39."""
     return 4.0 * SHEAR / E * STICK
 
 
 def printed(r_m, peak=PEAK, mean=MEAN_OVER_PEAK):
-    """K_TS [N] by Eq. 45 as printed: tangential stiffness of a set of spots per node, times a diameter."""
+    """K_TS by Eq. 45 as printed, in N although a torsional stiffness.
+
+    The tangential stiffness of a set of spots at each node, times the diameter. `peak` [Pa], `mean` [1]:
+    largest pressure, and mean over largest pressure.
+    """
     return NODES * ratio() * pressure_length(r_m) * mean * peak * 2.0 * RADIUS
 
 
 def energy(r_m):
-    """K_TS [N.m/rad] by the energy of a unit twist, with the same sets of spots."""
+    """K_TS [N.m/rad] from the energy of a unit twist, with the sets of spots of Eq. 45."""
     return printed(r_m) * RADIUS / 2.0
 
 
@@ -145,8 +149,7 @@ def scales():
 
 
 def physics():
-    """Print K_TS from the normal load of the ring model and a roughness, K_N = N/(0.48 h), by the energy of a
-    twist."""
+    """Print K_TS from the energy of a twist, with K_N = N/(0.48 h): load N of the ring model, roughness h."""
     print("ring model's normal load 268 N at 5 N.m, K_N = N/(0.48 h), K_T/K_N = 4 G'/E without slip")
     for h in (6.4e-6, 8.8e-6):
         K = 268.0 / (0.48 * h)

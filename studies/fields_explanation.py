@@ -5,11 +5,11 @@ nodes.
 
 reduction  : points for a nodal field: number, deviation, processor time; `jointfmu footprint import` of 1e5
              nodes
-normal     : force and stiffness of few points beside all nodes
-friction   : friction of few patches beside all nodes with many sliders
+normal     : force and stiffness of few points compared with all nodes
+friction   : friction of few patches compared with all nodes with many sliders
 poles      : force in gross slip about poles inside the contact
 sliders    : number of slider heights of Mindlin's sphere, for backbone, loops and combined motions
-foundation : friction of the joint's patches and sliders beside Jaeger and Ciavarella on all nodes
+foundation : friction of the joint's patches and sliders compared with Jaeger and Ciavarella on all nodes
 
 Times are processor times of all threads: let BLAS have one (OPENBLAS_NUM_THREADS=1).
 """
@@ -122,7 +122,7 @@ REDUCTIONS = {
 
 
 def print_normal() -> None:
-    """Print the deviation of forces and stiffnesses of few points from those of all nodes."""
+    """Print the deviation of forces and stiffnesses at few points from the results at all nodes."""
     spring = default_spring()
     mean = contacts.mean_pressure(spring)
     heading("", "contact", "nodes", "points", "s", *contacts.ranges(1.0))
@@ -139,7 +139,7 @@ def print_normal() -> None:
 
 
 def sheared_contacts() -> Iterator[tuple[str, list[PressureDistribution]]]:
-    """Contacts in the table of friction; for several contacts the table has the largest deviation."""
+    """Groups of contacts in the table of friction; the table has the largest deviation of each group."""
     yield from ((name, [shape]) for name, shape in contacts.contacts())
     yield f"{RANDOM_PLATES} random plates", [contacts.random_plate(seed) for seed in range(RANDOM_PLATES)]
 

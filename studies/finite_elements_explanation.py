@@ -48,7 +48,7 @@ BOX = Path(str(files("jointfmu_models") / "assemblies" / "box_specimen.toml"))
 
 
 class HardContact:
-    """Contact law without roughness: its stiffness [Pa/m] is 300 times that of the law at 1 MPa."""
+    """Contact law without roughness: its stiffness [Pa/m] is 300 times the stiffness of the law at 1 MPa."""
 
     def __init__(self, stiffness: float = 1e14) -> None:
         self.stiffness = stiffness

@@ -92,9 +92,9 @@ def all_drives():
     held = [play / item.numbers["lost_motion"].value for item, _, _, play, _ in found]
     size = f"{len(found)} drives"
     rows = [
-        ("wind-up at T1, T2, rated and peak torque", size, "K1 to T2: set by it", "up to "
+        ("wind-up at T1, T2, rated and peak torque", size, "K1 to T2, set from it", "up to "
          f"{100.0 * max(abs(m) for _, miss, *_ in found for m in miss):.2f} % off, in the corners"),
-        ("hysteresis loss, at its limit", size, "`hysteresis_loss`: set by it", "the loop through rated "
+        ("hysteresis loss, at its limit", size, "`hysteresis_loss`, set from it", "the loop through rated "
          f"torque opens by it within {max(map(abs, loops)):.0e}"),
         ("lost motion < 1 arcmin", size, "predicted", f"{min(lost):.2f} to {max(lost):.2f} arcmin"),
         ("the same, with hysteresis at its limit", size, "predicted", f"{min(held):.2f} to {max(held):.2f} "
@@ -148,7 +148,12 @@ def single_drives():
         "running torque [mN m]",
         "back-driving torque, published [N m]",
     )
-    head += ("model", "guess: ratio times starting torque", "efficiency, published [%]", "model: set by it")
+    head += (
+        "model",
+        "guess: ratio times starting torque",
+        "efficiency, published [%]",
+        "model, calibrated to it",
+    )
     print_table((*head, "predicted from back-driving torque", "guess: no `load_loss`"), rows)
 
 
@@ -181,7 +186,7 @@ def over_load():
         no_load = (1.0 / factors[0.5] - 1.0) / full
         drive = test_rig(friction_coulomb=no_load * carried, load_loss=1.0 / full - 1.0 - no_load)
         for share, factor in sorted(factors.items()):
-            role = "set by it" if share in (0.5, 1.0) else "predicted"
+            role = "calibrated" if share in (0.5, 1.0) else "predicted"
             computed = drive.efficiency(CATALOGUE_MOTOR_SPEED, share * 172.0) / full
             rows.append((name, share, f"{factor:.3f}", f"{computed:.3f}", role))
     print_table(("curve", "torque over rated", "efficiency over that at rated torque", "model", ""), rows)
@@ -199,7 +204,7 @@ def over_speed():
         drive = test_rig(friction_coulomb=dry, friction_viscous=slope)
         for rpm, efficiency in sorted(known.items()):
             computed = drive.efficiency(rpm * RPM, 172.0)
-            role = "set by it" if rpm in (slow, fast) else "predicted"
+            role = "calibrated" if rpm in (slow, fast) else "predicted"
             rows.append((name, f"{rpm:.0f}", f"{100.0 * efficiency:.1f}", f"{100.0 * computed:.1f}", role))
     print_table(("curve", "rev/min", "efficiency [%]", "model [%]", ""), rows)
 
@@ -226,7 +231,7 @@ def over_both():
 
 
 def worked_examples():
-    """Print worked examples: efficiency at part load from that at rated torque, with the usual load loss."""
+    """Print worked examples: efficiency at part load, from efficiency at rated torque and usual load loss."""
     rows = []
     for name in ("FR-40-160", "HFUC-20-80", "SHG-20-80"):
         ((_, full),) = published_points(name, "efficiency").items()
@@ -258,8 +263,7 @@ def scaling():
 
 
 def robot():
-    """Print the measured friction of a robot's base joint, that of its catalogue drive, and predictions for
-    the other joints."""
+    """Print the friction of a robot's base joint, measured and by catalogue; predict the other joints."""
     base, rows = measured_friction(), []
     print(f"\nDrag that fits the base joint best: {fit_drag():.4f} N m at 20 degrees C.")
     rows.append(("base joint, measured", *(f"{1e3 * x:.0f}" for x in base)))

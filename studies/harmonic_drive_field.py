@@ -3,9 +3,9 @@
     python studies/harmonic_drive_field.py [SECTION ...] [--plot FILE]
 
 checks    : closed forms and convergence
-fields    : the pressure over the torque, beside the default of the drive
+fields    : the pressure over the torque, and the default parameters of the drive
 forces    : forces that the published peak pressure would need
-published : torsional stiffness beside the published numbers
+published : torsional stiffness compared with the published numbers
 variants  : the estimates, varied one by one
 picture   : the field over the angle, into --plot FILE (on request)
 """
@@ -128,7 +128,7 @@ def forces():
 
 
 def cup():
-    """Print the stiffness of the cup against ovalling, over that of the rings in its contact.
+    """Print the stiffness of the cup against ovalling, over the stiffness of the rings in its contact.
 
     Rayleigh's deformation without stretching, w (1 - z/L) cos(2 theta): bending by 3 w/r^2 around and
     twist by 3/2 w/(r L), energy D/2 (bending^2 + 2 (1 - nu) twist^2), one wall throughout.

@@ -44,7 +44,7 @@ def solved(kind, seed, points, scale=1):
 
 
 def ratios(kind, seeds, points=POINTS, scale=1, gaussian=False):
-    """Law over boundary elements (seeds, loads); with `gaussian`, of p/(0.45 h)."""
+    """Stiffness (seeds, loads) [1] of the law over boundary elements; `gaussian`: of the law p/(0.45 h)."""
     rows = []
     for seed in seeds:
         curve, _, p, k = solved(kind, seed, points, scale)
@@ -77,14 +77,14 @@ def print_table(title, kinds, seeds, points=POINTS, scale=1):
 
 
 def print_proof():
-    """Law of heights on the surfaces of the proof, on surfaces of few hills, at light load."""
+    """Print the law of heights on surfaces with even seeds, on surfaces of few hills, and at light load."""
     print_table("surfaces of the proof", list(KINDS), PROVED)
     print_table("fewer than 16 hills", list(FEW_HILLS), (0, 2, 4, 6))
     print_table("light load, 16 times as many hills", list(KINDS), PROVED[:1], LIGHT_POINTS, LIGHT_SCALE)
 
 
 def print_fit():
-    """Root mean square of ln(law over boundary elements) on the odd seeds, over both constants."""
+    """Print the rms of ln(law over boundary elements) on the odd seeds, for values of both constants."""
     heading("rms of ln(law over boundary elements), odd seeds", "SECTION_AREA_FACTOR", *LIMITS)
     kept = bearing_curve.SECTION_AREA_FACTOR, bearing_curve.GAUSSIAN_DECAY_LIMIT
     for factor in FACTORS:
@@ -107,7 +107,7 @@ def skewed_heights(Rq, skewness, seed):
 
 
 def print_joints():
-    """Law of heights over measured joints, with the skewness of their finish."""
+    """Print the law of heights over measured joints, with the skewness of their finish."""
     pressures = [f"{p / 1e6:g} MPa" for p in MEASURED]
     heading("law of heights over measured stiffness", "joint", "skewness of each side", *pressures)
     for joint in joints_with_roughness():
@@ -124,7 +124,7 @@ def print_joints():
 
 
 def print_heights():
-    """Fit and proof of the law of heights, and measured joints."""
+    """Print fit and proof of the law of heights, and the law over measured joints."""
     print_fit()
     print_proof()
     print_joints()

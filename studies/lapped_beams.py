@@ -40,7 +40,7 @@ STEPS = 8
 
 
 def reduced_joints(structure, gap=None):
-    """Joint of the reduced beam for each law, with plane faces or with a gap [m] at positions x, y."""
+    """Joint {law: joint} of the reduced beam, with plane faces or with a function gap [m] of x, y [m]."""
     preload, found = data()["beam"]["preload"], {}
     for name, law in laws().items():
         curve, shear = tabulate_approach(law), float(law.shear_stiffness_ratio())

@@ -216,8 +216,7 @@ class Bolted:
         return abs(self.tight + float(self.load(-x[2])) - self.last[4]) - CHANGED * self.tight
 
     def run(self, tolerance, stop):
-        """Numbers of steps, right-hand sides without those of Jacobians, Jacobians, states and events of a
-        simulation."""
+        """Numbers of steps, right-hand sides (not for Jacobians), Jacobians, states and events of a run."""
         amplitude = np.array(AMPLITUDES) * self.reach
         x = np.concatenate([[0.0, amplitude[1], 0.0], amplitude * self.rate * [1.0, 0.0, 1.0]])
         usual = np.concatenate([self.reach, self.reach * self.rate])
@@ -249,7 +248,7 @@ NAMES = "steps", "right-hand sides", "Jacobians", "states", "events"
 
 
 def print_drive():
-    """Print the numbers for a motor and a link on the drive equations."""
+    """Print steps, evaluations and events for a motor and a link with the equations of the drive."""
     heading("Motor and link on the component's equations, BDF", "drive", *NAMES)
     for friction in (False, True):
         for turns in (False, True):
@@ -260,7 +259,7 @@ def print_drive():
 
 
 def print_bolted_joint():
-    """Print the numbers for a mass on the equations of the bolted joint."""
+    """Print steps, evaluations and events for a mass on the equations of the bolted joint."""
     heading("A mass on a bolted joint, BDF", "friction", *NAMES)
     cases = ((False, 1e-6, 4e-4), (True, 1e-6, 4e-4), (True, 1e-6, 2e-2), (True, 1e-8, 2e-2))
     for kept, tolerance, stop in cases:

@@ -4,9 +4,9 @@ elements.
     python studies/models_explanation.py [SECTION ...] [--cells N] [--paths N]
 
 stiffness     : reduced joint over finite elements, each motion alone, other motions held
-first-loading : force up to slip and opening, less that with all compliances of the cells, over the largest
-                force
-poles         : force in gross slip about poles inside the contact, beside all nodes
+first-loading : force up to slip and opening, less the force with all compliances of the cells, over the
+                largest force
+poles         : force in gross slip about poles inside the contact, compared with all nodes
 closed-paths  : smallest work over heat on closed paths in six directions, through the FMU
 """
 
@@ -47,7 +47,7 @@ plate_joint = cache(PlateJoint.of)
 
 
 def print_stiffness(_: argparse.Namespace) -> None:
-    """Print the stiffness of the reduced joint over that of finite elements."""
+    """Print the stiffness of the reduced joint over the stiffness of finite elements."""
     heading("", "attached", *AXES)
     for attached in ATTACHMENTS:
         found, expected = stiffnesses(plate_joint(attached))
@@ -55,7 +55,7 @@ def print_stiffness(_: argparse.Namespace) -> None:
 
 
 def first_loading(joint: PlateJoint, count: int) -> Array:
-    """Deviation (5, levels) [1] of the force from that of a joint with all compliances of `count` cells.
+    """Deviation (5, levels) [1] of the force from a joint with all compliances of `count` cells.
 
     Along x, y, z, about y, z; over the force of gross slip or opening.
     """

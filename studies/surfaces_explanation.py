@@ -4,7 +4,7 @@
 
 identification : errors of D and G of Weierstrass-Mandelbrot and of Gaussian self-affine surfaces, coverage of
                  the intervals, time
-scans          : h and slope of Gaussian scans up to a longest wave, over those of the spectrum
+scans          : h and slope of Gaussian scans up to a longest wave, over h and slope of the spectrum
 
 All surfaces are read as `jointfmu surface` reads them.
 """
@@ -99,7 +99,7 @@ def print_identification(options):
         direction = {"isotropic": "areal", "textured": "x"}.get(shape, "profile")
 
         def cases(D, shape=shape, points=points):
-            """Surfaces with different phases; all seeds share the heights, which G only scales."""
+            """Yield (heights [m], G [m]) of surfaces with random phases, one for each seed."""
             for seed in SEEDS:
                 G = ROUGHNESSES[seed % len(ROUGHNESSES)]
                 yield weierstrass_mandelbrot(shape, points, D, G, FIRST_SEED + 1000 * round(10 * D) + seed), G
@@ -131,7 +131,7 @@ SHARES = (1.0, 0.5, 0.25)
 
 
 def scan_ratios(heights, D, G):
-    """Ratios (2, 3) of h and slope to those of the spectrum, for each longest wave."""
+    """Ratios (2, 3) of h and slope of scans to h and slope of the spectrum, for three longest waves."""
     flat, H = remove_form(heights), 2.0 - D
     rows = []
     for share in SHARES:
@@ -144,7 +144,7 @@ def scan_ratios(heights, D, G):
 
 
 def print_scans(options, points=128):
-    """Print height and slope of scans over those of the spectrum, and h of the specimen of Zhao 2018."""
+    """Print h and slope of scans over h and slope of the spectrum, and h of the specimen of Zhao 2018."""
     print(f"Gaussian map, {points} x {points} points, {options.draws} each: mean and standard deviation")
     print("| D | h: " + " | ".join(f"{share:g} L" for share in SHARES) + " | slope: L |")
     for D in (1.2, 1.5, 1.8):

@@ -3,8 +3,8 @@
     python studies/systems_explanation.py [SECTION ...]
 
 proof  : the bolted column over more periods: time of its build, rows that its proof compares
-energy : an arm with six drives, its motors held, oscillates for two seconds without losses, at several
-         tolerances of the host
+energy : drift of the energy of an arm with six drives and fixed motors that oscillates for two seconds
+         without losses, at several tolerances of the importing tool
 coupling : the six-axis arm, each axis alone and all coupled: frequencies at the end of its motion, errors of
          the tip, oscillation after the motion
 random : the robot joint from 10 000 random states under random torques, three steps of 10 ms each: all values
@@ -45,7 +45,7 @@ LONG_DURATIONS = (0.03, 1.0, 40.0)
 
 
 def potential(joint, widest: float):
-    """Elastic energy [J] as a function of the wind-up [rad], without losses."""
+    """Function: elastic energy [J] of a joint over the wind-up [rad] up to `widest`, without losses."""
     given = {name: 0.0 for name in LOSSES if name in joint.values}
     turns = np.linspace(-widest, widest, 4001)
     torque = joint.with_values(given).evaluate("HarmonicDriveSpring", phi2=turns)["tau"]
@@ -54,13 +54,13 @@ def potential(joint, widest: float):
 
 
 def print_energy_drift() -> None:
-    """Print the drift of the energy for each solver tolerance of the importing tool."""
+    """Print the drift of the arm's energy for each solver tolerance of the importing tool."""
     with tempfile.TemporaryDirectory() as name:
         drift_in(Path(name))
 
 
 def drift_in(folder: Path) -> None:
-    """Build the arm with held motors in a folder, and print the drift without losses."""
+    """Build the arm with fixed motors in a folder, and print the drift of its energy without losses."""
     model, axes, files = read_axes()
     joints = {f"joint{i}": drive(size) for i, size in enumerate(SIZES, 1)}
     pose = elastic.joint_positions(model, {"joint2": "0.7", "joint3": "0.8"})
@@ -111,7 +111,7 @@ def rigid_energies(angles, speeds):
 
 
 def print_coupling() -> None:
-    """Arm of `six_axis_robot` beside separate inertias: frequencies [Hz], tip errors, oscillation."""
+    """Print frequencies [Hz], tip errors and oscillation of the arm, coupled and with separate inertias."""
     model, axes, _ = read_axes()
     pose = np.array([link.travel for link in load_system("six_axis_robot").arm.links])
     tip = model.body("flange").id

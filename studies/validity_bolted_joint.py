@@ -3,12 +3,12 @@ beams.
 
     python studies/validity_bolted_joint.py [SECTION ...]
 
-vdi                : load factor, bolt force and opening of joints loaded at the heads, beside VDI 2230
-shear-lag          : compliance of a lap joint, beside its closed form
-friction           : force and loss beside finite elements with Coulomb friction at every element; --joint
-                     NAME, --variants, --refinement
+vdi                : load factor, bolt force and opening of joints loaded at the heads, and by VDI 2230
+shear-lag          : compliance of a lap joint over its closed form
+friction           : force and loss compared with finite elements with Coulomb friction at every element;
+                     --joint NAME, --variants, --refinement
 calculix           : loop of a lap joint in CalculiX with *FRICTION (on request; needs `ccx`)
-brake-reuss        : first frequency and damping of the Brake-Reuss beam, beside published curves; --images
+brake-reuss        : first frequency and damping of the Brake-Reuss beam, and published curves; --images
 brake-reuss-form   : the same with the scanned form of the lap
 brake-reuss-meshes : first frequency on other meshes (on request)
 measured-beam      : a measured lapped beam with unknown torque, friction and faces
@@ -194,7 +194,7 @@ def friction_deviations(
     """Format deviations of the reduced joint from finite elements with friction (`full`).
 
     The force deviations are relative to the largest force on first loading. The heat of a cycle is relative
-    to that of the finite elements.
+    to the heat by finite elements.
     """
     most = np.max(np.abs(full["first"][0]))
     first = np.max(np.abs(found["first"][0] - full["first"][0])) / most
@@ -213,7 +213,7 @@ def load_sequences() -> dict[str, Array]:
 
 
 def compare_friction(name: str, variants: bool, refinement: float) -> None:
-    """Print the rows of one joint."""
+    """Print the rows of one joint in the table of friction; `refinement`: of the finite element mesh."""
     attached, drawing, wrench = JOINTS[name]
     joint = PlateJoint.of(attached, drawing, refinement, elements=True)
     elements = FrictionElements.clamped(joint, wrench)

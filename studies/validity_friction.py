@@ -35,7 +35,13 @@ COARSE = 64
 
 @dataclass(frozen=True)
 class Surface:
-    """Rough surface that is sheared along x and along y."""
+    """Generated rough surface, and the comparison of its contact with the prediction under shear.
+
+    hurst    : Hurst exponent
+    roll_off : side of the surface over the longest wave
+    nu       : Poisson's ratio
+    stretch  : factor by which waves are shorter along x than along y
+    """
 
     hurst: float
     roll_off: int
@@ -156,7 +162,7 @@ def print_exponents(groups):
 def loss_exponent(one, share=None):
     """Exponent of the loss, d ln(loss)/d ln(displacement), between the two smallest amplitudes.
 
-    share : name of the predicted loss over that of boundary elements
+    share : name of the ratio of the predicted loss to the loss by boundary elements
     """
     loss = one.loss * (1.0 if share is None else getattr(one, share))
     first, second = (one.shift[cases.FORCES.index(a)] for a in cases.AMPLITUDES[:2])

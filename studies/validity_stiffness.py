@@ -3,12 +3,12 @@
     python studies/validity_stiffness.py [SECTION ...] [--images]
 
 measured-joints : measured stiffness, and the laws at the same pressures
-levels          : choices of `zhao2018` and the law `roughness` beside the published Ra and measured cast iron
+levels          : choices of `zhao2018` and the law `roughness`, the published Ra and measured cast iron
 sizes           : the laws over the nominal area, their roughness height, spots of one to ten critical areas
 parameters      : the laws over D and G
-verification    : boundary elements beside closed forms
-elastic         : elastic stiffness and real area without units
-own-surfaces    : each law on its own surface
+verification    : boundary elements compared with closed forms
+elastic         : dimensionless elastic stiffness and real area
+own-surfaces    : each law on the surface that it assumes
 grids           : influence of band and grid
 roughness       : the law `roughness`, see roughness_law.py
 heights         : the law of heights that are not Gaussian, see heights_law.py
@@ -223,7 +223,7 @@ def print_elastic():
 
 
 def print_laws():
-    """Print the three laws on their own surfaces; returns {(law, side): (case, boundary elements, law)}."""
+    """Print three laws on the surfaces they assume; returns {(law, side): (case, boundary elements, law)}."""
     results = {}
     for name, case in compare.cases().items():
         for side in track_progress(case.sides, name):

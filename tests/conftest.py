@@ -97,7 +97,8 @@ def pytest_collection() -> Iterator[None]:
 def pytest_make_collect_report(collector: pytest.Collector) -> Iterator[None]:
     """Let every second process collect the files in reverse order.
 
-    In a new clone, the processes then rewrite the asserts of different files, and read those of the others.
+    In a new clone, the processes then rewrite the asserts of different files, and read the rewritten files of
+    the others.
     """
     report: Any = yield
     if isinstance(collector, pytest.Directory) and os.environ.get("PYTEST_XDIST_WORKER", "0")[-1] in "13579":

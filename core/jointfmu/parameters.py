@@ -116,7 +116,7 @@ class ParameterFile:
         return self.origins.get(name, "default"), self.sources.get(name, _DEFAULT_SOURCE)
 
     def start_value(self, input_name: str) -> float:
-        """Start value of an input in its SI unit: that of the file, else the default of the joint."""
+        """Start value of an input in its SI unit: stated in the file, else the default of the joint."""
         variable = KINDS[self.joint].variables.get(input_name) if self.joint in KINDS else None
         return self.inputs.get(input_name, variable.start if variable else 0.0)
 
@@ -200,7 +200,7 @@ def load_parameter_file(path: str | Path, joint_name: str | None = None) -> Para
     prefix = _heights_prefix(cls)
     if prefix == _COMPARISON_SECTION_PREFIX and _ROUGHNESS_SECTION_PREFIX[:-1] in body:
         raise ValueError(
-            f"{path}: [roughness] does not act on law = {law!r}; allowed are [roughness] beside a law with a "
+            f"{path}: [roughness] does not act on law = {law!r}; allowed are [roughness] with a law with a "
             "height, and [comparison] for what the level is judged by"
         )
     declared = declared_entries(stated, cls)

@@ -191,7 +191,7 @@ def _add_limit_functions(function_graph: FunctionGraph, model: Model) -> None:
 class _CompletedTerm:
     """Load, stiffness or area of contact spots in a regime that ends below the largest spot.
 
-    So the integral over the regime is a constant of the parameters.
+    The integral over such a regime is a constant of the parameters.
     """
 
     term: SmoothTerm
@@ -212,9 +212,10 @@ class _CompletedTerm:
 
 
 def _split_regimes(spot_distribution: SpotDistribution) -> tuple[list[Number], list[SpotDistribution]]:
-    """Log-areas at which integrals by quadrature begin or end, and the contact law between each two of them.
+    """Divide the regimes of the contact spots into ranges of log-area, for quadrature.
 
-    Between two of these log-areas only the active terms need their quadrature.
+    Returns the ends of the ranges (log-areas at which an integral by quadrature begins or ends), and a spot
+    distribution for each range, with only the terms that are active in it.
     """
     terms = [t for row in spot_distribution.regime_terms.values() for t in row if isinstance(t, SmoothTerm)]
     ends: list[Number] = []
@@ -301,7 +302,7 @@ def add_law_functions(
 def _load_curvature(spot_distribution: SpotDistribution, largest_log_area: Number) -> Number:
     """Second derivative of the load less m times the first, F'' - m F', with respect to the log-area u.
 
-    It follows from the largest spot alone, without a sum over spots.
+    This value follows from the largest spot alone, without a sum over spots.
     """
     largest = sum(term.evaluate_spot(largest_log_area) for term in spot_distribution.regime_terms["load"])
     return (

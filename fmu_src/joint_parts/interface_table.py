@@ -67,7 +67,7 @@ def _find_table(parameters: object) -> StiffnessTable | None:
 
 
 def find_code_class(parameters: object) -> type[object]:
-    """Class of the parameter set with which the C code is generated: with a spline in place of the points."""
+    """Class of the parameter set for the C code: a spline replaces the points of a stiffness table."""
     cls = type(parameters)
     return cls if _find_table(parameters) is None else _class_with_numbers(cls)  # type: ignore[arg-type]
 

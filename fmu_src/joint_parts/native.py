@@ -147,7 +147,7 @@ def _add_jacobian(
     """Add two C functions for the Jacobian of the outputs with respect to inputs and states.
 
     `outputs_jacobian` computes factors of the Jacobian, `outputs_jacobian_product` the product with a seed.
-    The derivatives of the accelerations follow from those of the residuals (implicit function theorem).
+    The derivatives of the accelerations follow from derivatives of the residuals (implicit functions).
     """
     count, names = model.state_count, [v.name for v in model.outputs]
     accelerations = {name: ca.SX.sym(name) for name in names[count : count * 3 // 2]}

@@ -14,7 +14,7 @@ SLIDER_FILES = ("jenkins", "simd")
 def add_slider_functions(function_graph: FunctionGraph) -> None:
     """Add the return mappings of a friction slider to a graph.
 
-    They are for one direction with a constant or a changing limit, and for a plane.
+    The functions are for one direction with a constant or a changing limit, and for a plane.
     """
     force, displacement, limit_start, limit_end, stiffness, compliance = make_symbols("x", 6)
     predictor = elastic_predictor([force], 1.0, stiffness, [displacement])

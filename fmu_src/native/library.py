@@ -42,7 +42,7 @@ def machine_platform() -> str:
 def make_joint_library(model: Model, parameters: ParameterFile) -> JointLibrary:
     """Make the shared library that the native FMU of a model contains for this machine.
 
-    It is compiled for this machine alone, unless a build has compiled it already.
+    The library is compiled for this machine alone, unless a build has compiled it already.
 
     Raises ImportError if it must be compiled and a package is missing, RuntimeError for a platform without
     libraries and if the compiler fails.

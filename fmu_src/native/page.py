@@ -135,9 +135,9 @@ def _find_stable_steps(
 ) -> _StableSteps | None:
     """Largest stable communication steps of a joint with a body, at the end of the load ramp.
 
-    They follow from the largest stiffness and its damping by `stable_steps`: for a sequential master, which
-    passes on the force before the body steps, and for a parallel master with `lag_b` = 1. None: no input is a
-    speed, so the joint has no such limit.
+    The steps follow from the largest stiffness and its damping by `stable_steps`: for a sequential master,
+    which passes on the force before the body steps, and for a parallel master with `lag_b` = 1. None: no
+    input is a speed, so the joint has no such limit.
     """
     stiffnesses = [v for v in model.outputs if v.unit in _INERTIA_UNITS]
     if not stiffnesses or not any(v.unit in ("rad/s", "m/s") for v in model.inputs):
@@ -252,7 +252,7 @@ def _draw_ramp(model: Model, tabulated_joint: TabulatedJoint, start_values: Mapp
 
 
 def draw_further_charts(model: Model, tabulated_joint: TabulatedJoint) -> dict[str, str]:
-    """{name: HTML element} of the charts of an FMU's page, except those of the load ramp."""
+    """{name: HTML element} of the charts of an FMU's page, except charts of the load ramp."""
     drawings = find_fmu_parts(model).chart_drawings.get(model.name, {})
     return {
         name: chart.make_figure(panels(tabulated_joint, model.ramp.end_value))

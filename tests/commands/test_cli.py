@@ -187,14 +187,14 @@ def test_a_roughness_out_of_the_file_of_another_law(law_json, tmp_path, run):
 @pytest.mark.parametrize(
     ("settings", "message"),
     [
-        (["h=1e-6", "Ra1=1e-6"], "Ra1 beside h: state one height for each side, or only h"),
+        (["h=1e-6", "Ra1=1e-6"], "Ra1 with h: state one height for each side, or only h"),
         (["surface.D=1.3"], "surface.D without surface.G: expected both, or heights"),
         (["surface.G=1e-9"], "surface.G without surface.D: expected both, or heights"),
         (
             ["surface.D=1.3", "surface.G=1e-9", "h=1e-6"],
-            "surface.D, surface.G beside h: expected D and G, or heights",
+            "surface.D, surface.G with h: expected D and G, or heights",
         ),
-        (["surface.D=1.3", "Ra1=1e-6"], "surface.D beside Ra1: expected D and G, or heights"),
+        (["surface.D=1.3", "Ra1=1e-6"], "surface.D with Ra1: expected D and G, or heights"),
     ],
 )
 def test_a_roughness_is_stated_once_and_whole(run, settings, message):
@@ -364,7 +364,7 @@ def test_a_missed_point_gives_status_1(run, wrong):
 
 
 def test_the_last_line_names_a_law_that_missed(run, monkeypatch):
-    """The summary of the published numbers, below that of the laws, says that it missed none."""
+    """The summary of the published numbers, below the summary of the laws, says that it missed none."""
     normal_stiffness = zhao2018.normal_stiffness
     monkeypatch.setattr(zhao2018, "normal_stiffness", lambda law, a: 1.01 * normal_stiffness(law, a))
     status, out, _ = run("validate")

@@ -114,7 +114,7 @@ def folder(read: Path, tmp_path: Path) -> Path:
     ids=lambda line: line[:24],
 )
 def test_an_example_runs(line: str, folder: Path, enter: Enter, capsys: pytest.CaptureFixture[str]) -> None:
-    """All examples except that of a plate, which tests/drawing/test_new.py runs."""
+    """All examples except the plate, which tests/drawing/test_new.py runs."""
     enter(chdir(folder))
     enter(environment(JOINTFMU_CACHE=str(folder / "parts")))  # a user's may be large
     enter(coarse.poses())

@@ -27,7 +27,7 @@ def test_pressure_over_decay_length_is_the_stiffness_of_boundary_elements(kind):
 
 @pytest.mark.parametrize("heights", [gaussian(6, 64), plateau(6, 64, 0.55, 0.1)])
 def test_solved_scan_is_that_of_another_boundary_element_code(heights):
-    """ContactMechanics beside tamaas, elastic."""
+    """In elastic contact, ContactMechanics (the product's solver) agrees with tamaas."""
     n, side, modulus, height = 64, 1e-3, 1e11, 1e-6
     scan = ArealMap(z=height * heights, dx=side / n, dy=side / n, name="scan")
     contacts = press(heights, slope(heights) * LOADS)

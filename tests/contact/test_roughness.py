@@ -177,8 +177,11 @@ def test_a_field_keeps_it():
         (entry("h", '"fine"'), ["comparison.h = 'fine'", "not a number"]),
         (entry("Ra1", 0.8, "um"), ["comparison.Ra1", "unit 'um'", "expected 'm'"]),
         (entry("Rz1", 1e-6), ["'comparison.Rz1'", "comparison.Ra1, comparison.Ra2, comparison.Rq1"]),
-        (entry("Ra1", 1e-6) + entry("Rq1", 1e-6), ["comparison.Ra1 beside comparison.Rq1", "one height"]),
-        (entry("h", 1e-6) + entry("Ra2", 1e-6), ["comparison.h beside comparison.Ra2", "or only h"]),
+        (
+            entry("Ra1", 1e-6) + entry("Rq1", 1e-6),
+            ["comparison.Ra1 with comparison.Rq1", "one height"],
+        ),
+        (entry("h", 1e-6) + entry("Ra2", 1e-6), ["comparison.h with comparison.Ra2", "or only h"]),
         ("h = 1e-6\n", ["comparison.h = 1e-06", "{ value, unit, kind, source }"]),
     ],
 )

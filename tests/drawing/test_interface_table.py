@@ -109,4 +109,4 @@ def test_a_wrong_file_is_refused_in_one_line(lines, message, table, capsys):
 
 def test_a_law_beside_the_table_is_refused(table, capsys):
     assert main(["new", *PLATE, "--law", "zhao2018", "--interface-table", table(HEAD, *POINTS)]) == 2
-    assert "--law zhao2018 beside --interface-table; state one of them" in capsys.readouterr().err
+    assert "--law zhao2018 with --interface-table; state one of them" in capsys.readouterr().err

@@ -56,8 +56,8 @@ def test_a_lap_has_the_compliance_of_shear_lag(reach):
 @needs("gmsh")
 @pytest.mark.parametrize("attached", ATTACHMENT_NODES)
 def test_bodies_without_compliance_leave_the_interface(attached):
-    """With plates 1e6 times as stiff, 1e-6 of their compliance remains, which was up to 13 times that of the
-    interface."""
+    """With plates 1e6 times as stiff, 1e-6 of their compliance remains, which was up to 13 times the
+    compliance of the interface."""
     assembly = block()
     stiff = replace(assembly.side1, E=206e15)
     joint = JointFiniteElements.from_assembly(replace(assembly, side1=stiff, side2=stiff), attached)

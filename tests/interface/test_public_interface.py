@@ -205,7 +205,7 @@ def test_a_law_evaluates_arrays_of_parameters(name, varied):
 
 
 def test_a_law_is_judged_as_by_the_command(capsys):
-    """The warnings equal those of `jointfmu law`, for the default surface and for a stated one."""
+    """The warnings equal the warnings of `jointfmu law`, for the default surface and for a stated one."""
     for varied in ({"critical_area": "printed"}, {"surface.D": 1.2}):
         settings = [f"{name}={value}" for name, value in varied.items()]
         assert cli.main(["law", "zhao2018", "--pressure", "1e6", "--json", "--set", *settings]) == 0

@@ -103,7 +103,7 @@ def test_modelica_has_its_interface_and_wrapper():
 
 
 def test_uncertainty_of_a_line(capsys):
-    """f is linear in c, so its quantiles are those of c times the elongation."""
+    """f is linear in c, so its quantiles are the quantiles of c, times the elongation."""
     assert cli.main(["uncertainty", "toy", "--set", "c=9000..11000", "--samples", "1024", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     median = np.array(found["outputs"]["f"]["quantiles"]["0.5"])

@@ -33,7 +33,7 @@ class Identification:
 
     lengths   : {name: m}
     error     : (6) [1] computed over measured frequency, less 1
-    slope     : (6, 5) [1] change of the logarithm of a frequency with that of a length
+    slope     : (6, 5) [1] change of the logarithm of a frequency with the logarithm of a length
     """
 
     lengths: dict[str, float]

@@ -77,7 +77,7 @@ POLE_COUNT = 400
 
 
 def ranges(moment: float) -> dict[str, StateRange]:
-    """Ranges of states; `moment` is the one at which the first node in contact opens."""
+    """Ranges of states; `moment` is the moment at which the first node in contact opens."""
     return {
         "no tilt": StateRange(0.9 * moment),
         "tilt 0.1": StateRange(0.9 * moment, tilt=0.1),

@@ -1,6 +1,6 @@
 """Bolted joints with elastic plates by finite elements, as references for the reduced joint.
 
-`PlateJoint` is a joint as `jointfmu new` makes it, beside its linear finite elements. `FrictionElements` has
+`PlateJoint` is a joint as `jointfmu new` makes it, with its linear finite elements. `FrictionElements` has
 Coulomb friction at every element of the contact. `Lap` has the closed form of shear lag, `vdi_2230` the load
 factor.
 """
@@ -379,7 +379,7 @@ class Lap:
     def linear(self, reach: float) -> tuple[float, BoltedJointSpring, LinearJoint]:
         """Tangential stiffness [Pa/m], spring of the interface alone, linear solution by finite elements.
 
-        reach : length of the lap over that of shear lag [1]
+        reach : length of the lap over the length of shear lag [1]
         """
         plate, beta = self.assembly.side1, reach / self.assembly.side1.length
         shear = 0.5 * beta**2 * plate.E * plate.thickness

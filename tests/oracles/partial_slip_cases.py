@@ -41,7 +41,7 @@ class Prediction:
     initial_stiffness : tangential stiffness of small displacements
     shift             : (forces) displacements at FORCES
     approach_drops, load_drops : (n) decrease of approach and load, from zero to full unloading
-    amplitudes        : the ones of AMPLITUDES that have loops
+    amplitudes        : values of AMPLITUDES that have loops
     areas             : {"theory", "sliders", "sphere": (amplitudes)} loop areas by the three predictions
     """
 
@@ -66,10 +66,9 @@ class Comparison:
     area, load     : real over nominal area [1], mean pressure on the nominal area [E*]
     shift          : (forces) displacements over the side
     force, across  : (forces) over the friction limit, along the displacement and across it
-    theory, sphere : (forces) predicted displacements at these forces, over those of boundary elements [1]
+    theory, sphere : (forces) predicted over computed displacements at these forces [1]
     loss           : (amplitudes) loop areas
-    loop_theory, loop_sliders, loop_sphere : (amplitudes) predicted loop areas over those of boundary elements
-                                             [1]
+    loop_theory, loop_sliders, loop_sphere : (amplitudes) predicted over computed loop areas [1]
     open           : largest force by which a loop does not close, over its amplitude [1]
     """
 
@@ -146,7 +145,7 @@ def slider_loop_areas(curve, ratio, amplitudes):
 
 
 def heights(hurst, roll_off, seed, points=POINTS, stretch=1):
-    """Heights of a rough square with waves up to side/roll_off, `stretch` times shorter along x."""
+    """Heights of a rough square of side 1 with waves up to side/roll_off, `stretch` times shorter along x."""
     band = (1.0 / roll_off, SPACINGS_PER_WAVE * stretch / points)
     z = rough_surfaces.periodic(1.0, points, 3.0 - hurst, 1e-6, band, seed).z
     return z[(stretch * np.arange(points)) % points]

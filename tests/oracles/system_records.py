@@ -2,7 +2,7 @@
 
 A drive without friction and hysteresis is a linear system, whose motion scipy computes exactly
 (`scipy.signal.lsim`, torques linear between samples). With friction and hysteresis the compiled system is
-simulated at a tolerance a thousand times tighter than that of a fit. Encoders have noise and a resolution.
+simulated at a tolerance a thousand times tighter than in a fit. Encoders have noise and a resolution.
 """
 
 from pathlib import Path
@@ -138,7 +138,7 @@ def move_drive_with_friction(path: Path, time: np.ndarray, torque: np.ndarray) -
 
 
 def write_record(path: Path, columns: dict[str, np.ndarray], seed: int, correlation: float = 0.0) -> Path:
-    """Write a record; angles are those that encoders of RESOLUTIONS show.
+    """Write a record with the angles that encoders of RESOLUTIONS show.
 
     columns     : {time, input or angle: values (n) [SI]}
     correlation : of the noise of neighbouring samples [1]

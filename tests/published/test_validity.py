@@ -1,7 +1,7 @@
 """Boundary elements against closed forms, and claims of docs/validity_stiffness.md, on small grids.
 
 The numbers of the document come from studies/validity_stiffness.py; the bounds here are wide enough for grids
-of 64 and 128 points, whose answers were seen to lie within a factor of two of those of 256.
+of 64 and 128 points, whose results were within a factor of two of the results for 256.
 """
 
 from dataclasses import replace

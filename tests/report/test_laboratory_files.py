@@ -268,7 +268,7 @@ def test_roughnesses_make_the_height_of_the_law(shown: Browser, tmp_path: Path) 
     check_shown(shown, alone, tmp_path)
     said = refusal(shown, text + roughness(3e-6))
     assert re.search(r"h = \S+ m does not agree with roughness.Ra1, roughness.Ra2, which give ", said)
-    assert "roughness.Rq1 beside roughness.Ra1" in refusal(shown, alone + entry("Rq1", 1e-6, "m"))
+    assert "roughness.Rq1 with roughness.Ra1" in refusal(shown, alone + entry("Rq1", 1e-6, "m"))
 
 
 @needs("Chromium", "gmsh")

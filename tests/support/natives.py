@@ -97,7 +97,8 @@ def check_slopes(
     virgin start.
 
     The references are central differences of fourth order. A kink or jump between their points is detected by
-    the difference to those of second order, which is at least a quarter of its effect on the fourth order.
+    the difference to central differences of second order, which is at least a quarter of its effect on the
+    fourth order.
     """
     expected, size = package(name, changes).after(), abs((STATE[name] | CASES[name].numbers.sizes)[moved])
     h = 1e-3 * size

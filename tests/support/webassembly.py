@@ -96,8 +96,8 @@ class Instance:
 
 
 def random_values(module: PageModule, rng: np.random.Generator, switched: bool) -> dict[str, Any]:
-    """Random parameters near those of the first file, inside their intervals and limits; with Booleans if
-    `switched`."""
+    """Random parameters near the parameters of the first file, inside their intervals and limits; with
+    Booleans if `switched`."""
     values = module.parameter_files[0].values
     while True:
         found = _drawn(module, rng, switched)

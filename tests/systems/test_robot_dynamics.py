@@ -1,4 +1,4 @@
-"""Rigid-body dynamics of robots beside MuJoCo and Pinocchio, at random states."""
+"""Rigid-body dynamics of robots, compared with MuJoCo and Pinocchio, at random states."""
 
 import mujoco
 import numpy as np

@@ -1,4 +1,4 @@
-"""Robot as one FMU: its equations in C, energy, frequencies, ringing and steps beside MuJoCo with springs."""
+"""Robot as one FMU: equations in C, energy, frequencies, ringing and steps; against MuJoCo with springs."""
 
 from dataclasses import replace
 
@@ -135,7 +135,7 @@ def test_accelerations_and_tip_are_mujocos(robot):
 
 
 def test_frequencies_over_ten_poses_are_mujocos(robot):
-    """Eigenvalues of the exact derivatives beside those of MuJoCo by differences; the limit is 0.5 %."""
+    """Frequencies by the exact derivatives agree within 0.5 % with MuJoCo, by differences."""
     file, arm, model, dofs = robot
     rng = np.random.default_rng(6)
     for k in range(10):
@@ -175,7 +175,7 @@ def energy(model, dofs, arm, travel, speeds):
 
 
 def test_energy_of_a_free_swing_is_kept(robot):
-    """All motors free, no losses, one second; beside the largest kinetic energy."""
+    """Free motors, no losses: the energy is constant for one second, relative to the kinetic one."""
     file, arm, model, dofs = robot
     m = Robot(file, tolerance=1e-9)
     m.write({f"{name}.tau_motor": 0.0 for name in NAMES})

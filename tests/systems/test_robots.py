@@ -57,7 +57,7 @@ def pulled(model, torques):
     ],
 )
 def test_wind_up_at_rated_torque_is_the_fmus(name, capsys):
-    """At the end of a ramp of 2 s to rated torque, the wind-up is within 3 % of that of the FMU."""
+    """At the end of a ramp of 2 s to rated torque, the wind-up is within 3 % of the FMU's wind-up."""
     said, model = exported(capsys, name)
     drive = jointfmu.load(name)
     rated = drive.values["rated_torque"]

@@ -346,7 +346,7 @@ def test_coupled_links_have_the_inverse_dynamics_of_the_arm() -> None:
 
 
 def test_six_drives_differ_and_wind_up_as_their_catalogue_says() -> None:
-    """The wind-ups are those at T2 of the rows of sizes 32, 40, 25, 20, 17, 14; round corners
+    """The wind-ups are the catalogue's wind-ups at T2 of sizes 32, 40, 25, 20, 17, 14; round corners
     change 0.5 %."""
     rows = {
         "base": (29, 108, 67e3, 110e3),

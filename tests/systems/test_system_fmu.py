@@ -155,7 +155,7 @@ def test_scales_decide_what_counts(joint, tmp_path, scale, refused):
 
 @pytest.mark.parametrize(("sensitive", "end"), [(3.0, 2.0), (0.505, 0.5), (0.5, 0.49)])
 def test_the_proof_ends_before_the_motion_is_too_sensitive(monkeypatch, sensitive, end):
-    """Where a tool's tolerance gives other results than that of the references."""
+    """The proof ends where a tool's tolerance gives other results than the tolerance of the references."""
     model = assemble_system(load_system("robot_joint")).make_model()
 
     def exchanged(model, fmu, times, tolerance):

@@ -284,7 +284,7 @@ JOINT = ("uncertainty", "gear_contact", "--set", *SAMPLED, "--points", "30")
 
 
 def test_a_study_of_a_joint_is_killed_and_resumed(tmp_path, capsys):
-    """kill -9 in the middle: the numbers are equal to the bit to those of a study without a folder."""
+    """kill -9 in the middle: the numbers are equal to the bit to the numbers of a study without a folder."""
     arguments = [*JOINT, "--samples", "128", "--json"]
     assert cli.main(arguments) == 0
     expected = json.loads(capsys.readouterr().out)

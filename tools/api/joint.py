@@ -237,7 +237,7 @@ class Joint(TableDisplay):
         facts = [
             f"# {name} = {value:.6g} {unit}: {text}\n" for name, (value, unit, text) in self.facts.items()
         ]
-        head = "# Computed beside the parameters:\n" if facts else ""
+        head = "# Computed in addition to the parameters:\n" if facts else ""
         write_parameter_text(path, head + "".join(facts) + format_parameter_file(self.file))
         return Path(path)
 

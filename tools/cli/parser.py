@@ -94,7 +94,7 @@ def _iterate_parsers(parser: argparse.ArgumentParser) -> Iterator[argparse.Argum
 
 
 def _option_names(parser: argparse.ArgumentParser, words: Sequence[str]) -> list[str]:
-    """Long options of the command that the words of a command line name."""
+    """Long options of the command (and sub-command) at the start of the words of a command line."""
     for word in words:
         subs = [sub for sub in _subparser_actions(parser) if word in sub.choices]
         if not subs:

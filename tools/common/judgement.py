@@ -121,7 +121,7 @@ def assess_law_stiffness(
     pressures             : (n) [Pa]; pressures of zero or infinity are ignored
     rms_height            : [m] combined rms height of both surfaces; None: unknown
     peak_pressure         : [Pa] largest pressure, if `pressures` are mean values
-    joint_to_law_stiffness_ratio : stiffness of the joint over that of the interface law [1], one value or one
+    joint_to_law_stiffness_ratio : stiffness of the joint over stiffness of the law [1], one value or one
                             per pressure
     warn_outside_validity : also warn about pressures outside the range of validity
     """

@@ -298,7 +298,7 @@ def _select_supports(body: ElasticBody, stop_all_motions: bool) -> IndexArray:
     """Three unknowns of a body that stop its rigid-body motions in the contact plane.
 
     stop_all_motions : add three unknowns that stop the motion along z and the rotations about x and y.
-        Without them, the body rests on the contact.
+        Without these three, the body rests on the contact.
     """
     x, y, z = body.nodes
     first, second, third = (int(np.argmin(a * x + b * y + 1e-3 * z)) for a, b in ((1, 1), (-1, 1), (1, -1)))

@@ -191,7 +191,7 @@ def compute_frequencies(
 ) -> Array:
     """Compute the natural frequencies (load states, modes) [Hz] of an assembly in several load states.
 
-    joint : gives the interface law; its contact area is replaced by that of the assembly
+    joint : gives the interface law; its contact area is replaced by the area of the assembly
     tangential_stiffness_ratio : [1] tangential over normal stiffness of the interface
     load_states : preload [N] per bolt and moment [N.m] about x of each load state
     is_pressure_uniform : distribute the bolt force uniformly over the contact, and compute no pressure

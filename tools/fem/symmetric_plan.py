@@ -201,7 +201,7 @@ def _divide_circles(gmsh_model: object, bolts: Array, radii: tuple[float, float]
 def _make_rings(quadrilaterals: Array, bolts: Array, radii: Array) -> Array:
     """Rings of quadrilaterals (2, 4, m) [m] around bolts, between successive circles.
 
-    They continue the given mesh inwards: each edge of it on the largest circle becomes a column of
+    The rings continue the given mesh inwards: each edge of the mesh on the largest circle becomes a column of
     quadrilaterals.
 
     radii : (r) [m] of the circles, ascending

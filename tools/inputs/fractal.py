@@ -33,17 +33,16 @@ def structure_constant(H: Number) -> Number:
 
 
 def second_difference_ratio(H: Number) -> Number:
-    """Ratio V/S = 4 - 4^H [1] of two structure functions of heights, for a power law S(tau).
+    """Ratio V/S = 4 - 4^H [1] of two structure functions of heights, for a power law S(tau) ~ tau^(2 H).
 
-    Here V(tau) = 4 S(tau) - S(2 tau).
-
-    V is the mean square of the second difference of heights at the lag tau.
+    S is the mean square of the first difference of heights at the lag tau, V(tau) = 4 S(tau) - S(2 tau) the
+    mean square of the second difference.
     """
     return 4.0 - 4.0**H
 
 
 def profile_power_ratio(H: Number) -> Number:
-    """Ratio kappa [1] of the height variance Phi of a profile to that of its isotropic surface.
+    """Ratio kappa [1] of the height variance Phi of a profile to the variance of its isotropic surface.
 
     kappa = mean of |cos a|^(2H) over all directions a = Gamma(H + 1/2)/(sqrt(pi) Gamma(H + 1)). A wave that
     crosses the profile at an angle appears longer in the profile.

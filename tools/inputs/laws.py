@@ -82,7 +82,7 @@ def roughness_settings(
     fractals = {name: settings[name] for name in FRACTAL_PROFILE_PARAMETERS if name in settings}
     others = {name: value for name, value in settings.items() if name not in {*heights, *fractals}}
     if heights and fractals:
-        raise ValueError(f"{', '.join(fractals)} beside {', '.join(heights)}: expected D and G, or heights")
+        raise ValueError(f"{', '.join(fractals)} with {', '.join(heights)}: expected D and G, or heights")
     if heights:
         return others | (heights if [*heights] == ["h"] else {"h": combined_height(check_heights(heights))})
     if fractals:
@@ -111,8 +111,8 @@ def find_surface_rms_height(
 
     parameters : result of `build_law_parameters` for the same law, file and settings
 
-    If the parameters have no height, it is that of the file. The height of the default file is not used if
-    the settings change the surfaces.
+    If the parameters have no height, the height of the file is used. The height of the default file is not
+    used if the settings change the surfaces.
     """
     h = law_rms_height(parameters)
     if (

@@ -127,7 +127,7 @@ def check_decays(decays: Mapping[str, Sequence[Decay]]) -> list[Check]:
 def integrate_logarithmically(integrand: Callable[[Array], Array], interval_ends: Iterable[float]) -> Array:
     """Integrals of `integrand` between neighbouring ends > 0, by Simpson's rule over the logarithm.
 
-    Within 1e-8 of an adaptive rule, also for a law with a kink.
+    The results are within 1e-8 of an adaptive rule, also for a law with a kink.
     """
     values = []
     for pair in pairwise(interval_ends):

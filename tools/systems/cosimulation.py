@@ -29,7 +29,7 @@ def simulate_system(
     folder : folder of the FMUs (FMI 2.0)
     master : parallel (all components step together) or sequential (joints step after the bodies)
     step   : communication step [s]; None: interval of the system
-    stop   : stop time [s]; None: that of the system
+    stop   : stop time [s]; None: stop time of the system
 
     Raises ValueError if an FMU is missing or returns an error.
     """

@@ -92,7 +92,7 @@ def simulate_decays(
     folder             : folder of the FMUs (FMI 2.0) of joint and body
     initial_deflection : [m or rad] from the working point
     loads              : loads in SI units; None: the largest example load of the joint
-    inertia            : [kg.m2 or kg] of the body; None: that of the system
+    inertia            : [kg.m2 or kg] of the body; None: inertia in the system
     settings           : parameters of the joint that replace those of the system
 
     Raises ValueError if an FMU is missing or returns an error, or if too few periods can be resolved.

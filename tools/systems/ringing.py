@@ -271,7 +271,7 @@ def simulate_vibrations(
 
     folder  : folder of the FMUs (FMI 2.0) of joint and body
     loads   : loads in SI units; None: the example loads of the joint
-    inertia : [kg.m2 or kg] of the body; None: that of the system
+    inertia : [kg.m2 or kg] of the body; None: inertia in the system
 
     Raises ValueError if an FMU is missing or returns an error, or if there is no vibration.
     """

@@ -210,7 +210,7 @@ def build_systems(
 
 
 def _check_same_parameters(fmu_path: Path, parameter_file: ParameterFile) -> None:
-    """Raise InputRefusal if an FMU exists and was built from other parameters than those of the file."""
+    """Raise InputRefusal if an FMU exists and its parameters differ from the parameter file."""
     if not fmu_path.exists():
         return
     with archives.open_archive(fmu_path) as archive:
@@ -264,7 +264,7 @@ def _build_versions(out: Path, variability: str, fmu_name: str, component: Compo
 def write_archives(system: System, out: Path) -> list[Path]:
     """Write `out/ssp/NAME.ssp` (SSP 1.0) and `out/ssp2/NAME.ssp` (SSP 2.0) for each kind of master.
 
-    They contain the FMUs in `out/fmi2` and `out/fmi3`, and the parameters of the system.
+    The archives contain the FMUs in `out/fmi2` and `out/fmi3`, and the parameters of the system.
 
     Raises ValueError for invalid connections, see `wiring.find_connections`, or an unwritable folder.
     """
@@ -308,7 +308,7 @@ def _write_archive(system: System, out: Path, version: str, master: MasterKind) 
 def list_values(component: Component) -> dict[str, ParameterValue]:
     """Values {variable: value} that an archive sets in a component's FMU.
 
-    They are those of the parameter file of its joint and of the system file.
+    The values are those of the parameter file of its joint and of the system file.
 
     Booleans of the parameter file are omitted: they are start values of the FMU, and fmpy reads every Boolean
     of a parameter set as true.

@@ -166,7 +166,7 @@ class System:
 def _scale_partner(
     partner: Component, rating_before: FlangeRating, rating_after: FlangeRating, joint_name: str
 ) -> Component:
-    """Partner (body or load) scaled from the rated values of one joint to those of another joint.
+    """Partner (body or load) scaled from the rated values of one joint to the rated values of another joint.
 
     Loads scale with the rated load, inertias with the rated load over the motion of the flange. The permanent
     load `ramp_height` also changes by the difference of the friction of both joints.

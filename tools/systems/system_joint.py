@@ -36,7 +36,7 @@ def load_joint_file(folder: Path, name: str, joint: str, section: Mapping[str, A
 
 
 def _load_catalogue_item(name: str, joint: str, catalogue_item_name: str) -> ParameterFile:
-    """Load a catalogue item for the section `name`, as `jointfmu new` does; raises ValueError."""
+    """Load the catalogue item of section `name` as `jointfmu new` does; ValueError if it is unknown."""
     tool_module = load_tool_module(KINDS[joint], "new")
     if tool_module is None or "catalogue" not in {
         option.name for option in tool_module.NEW_JOINT_COMMAND.options

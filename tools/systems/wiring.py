@@ -117,7 +117,7 @@ def find_signals(system: System) -> list[Signal]:
 
 
 def find_lag_parameters(system: System) -> dict[str, list[str]]:
-    """Parameters `lag_...` of bodies: {body: those of the flanges that are connected to a joint}."""
+    """{body: its parameters `lag_...`, of the flanges that are connected to a joint}."""
     lag_parameters: dict[str, list[str]] = {}
     for first, second in find_connections(system):
         if first.is_joint and second.component and second.flange:

@@ -126,7 +126,7 @@ def solve_largest_spot(law: InterfaceLaw, pressure: ArrayLike) -> Array:
         raise ValueError(
             f"pressure = {np.broadcast_to(p, invalid.shape)[invalid].flat[0]:g} Pa is outside "
             f"[{np.max(min_load / law.A_0):.3g}, {np.min(max_load / law.A_0):.3g}]: its largest spot is not "
-            f"representable beside the critical area {np.max(spots.reference_area):.3g} m2 of this surface"
+            f"representable with the critical area {np.max(spots.reference_area):.3g} m2 of this surface"
         )
     parameters = np.shape(min_load)
     shape = np.broadcast_shapes(load.shape, parameters)
@@ -209,7 +209,7 @@ def evaluate_at_log_area(law: InterfaceLaw, largest_log_area: Number) -> dict[st
 def evaluate_at_pressure(law: InterfaceLaw, pressure: ArrayLike) -> dict[str, Number]:
     """Contact quantities of the nominal area A_0 at nominal pressures (...) [Pa].
 
-    The result has the same quantities as that of `evaluate_at_log_area`: load, stiffness, area, ...
+    The result has the quantities of `evaluate_at_log_area`: load, stiffness, area, ...
     """
     return evaluate_at_log_area(law, solve_largest_spot(law, pressure))
 
@@ -231,7 +231,7 @@ def evaluate_at_largest_spot(law: InterfaceLaw, spot_area: ArrayLike) -> dict[st
     u = np.log(a) - np.log(spots.reference_area)
     if np.any(bad := (u < MIN_LOG_AREA) | (u > MAX_LOG_AREA)):
         raise ValueError(
-            f"largest spot = {np.broadcast_to(a, bad.shape)[bad].flat[0]:g} m2 is not representable beside "
+            f"largest spot = {np.broadcast_to(a, bad.shape)[bad].flat[0]:g} m2 is not representable with "
             f"the critical area {np.max(spots.reference_area):g} m2, allowed are 260 decades below to "
             "130 above"
         )

@@ -86,7 +86,7 @@ class RegimeTerm(Protocol):
 class PowerTerm:
     """Quantity of a contact spot as a power of its area: coefficient exp(exponent t), t its log-area.
 
-    It is 0 outside `lower_log_area < t <= upper_log_area`; a bound None is infinite.
+    The quantity is 0 outside `lower_log_area < t <= upper_log_area`; a bound None is infinite.
     """
 
     coefficient: Number
@@ -111,7 +111,7 @@ class PowerTerm:
 class SmoothTerm:
     """Quantity of a contact spot as a smooth function of its log-area, summed by Gauss-Legendre quadrature.
 
-    It is 0 outside `[lower_log_area, upper_log_area]`.
+    The quantity is 0 outside `[lower_log_area, upper_log_area]`.
     """
 
     spot_function: Callable[[Number], Number]
@@ -271,7 +271,7 @@ class SpotDistribution:
     def regime_end_log_areas(self) -> list[Number]:
         """Log-areas [1] at which the stiffness of a spot changes its regime or has a kink, unsorted.
 
-        They are numbers or symbols.
+        The log-areas are numbers or symbols.
         """
         ends = [
             end

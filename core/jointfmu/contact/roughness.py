@@ -67,7 +67,7 @@ def predicted_stiffness(pressure: Number, h: Number) -> Number:
 def conflicting_heights(height_name: str) -> tuple[str, ...]:
     """Names of the heights that a file must not state together with a height.
 
-    These are the other heights of the same surface, and the combined height `h`.
+    The result has the other heights of the same surface, and the combined height `h`.
     """
     if height_name == "h":
         return tuple(other for other in HEIGHT_FIELDS if other != "h")
@@ -88,7 +88,7 @@ def check_heights(heights: Mapping[str, Any], name_prefix: str = "") -> dict[str
         conflicts = [other for other in conflicting_heights(name) if other in heights]
         if conflicts:
             others = ", ".join(name_prefix + other for other in conflicts)
-            texts.append(f"{name_prefix}{name} beside {others}: state one height for each side, or only h")
+            texts.append(f"{name_prefix}{name} with {others}: state one height for each side, or only h")
             break
     if texts:
         raise ValueError("; ".join(texts))

@@ -102,7 +102,7 @@ def domain_extension(D: Number) -> Number:
 def domain_extension_fit(D: Number) -> Number:
     """Domain extension factor psi [1] for a surface dimension 2 < D < 3: fit of Hu 2023 below Eq. 17.
 
-    It is within 0.38 % of the root of `domain_extension`.
+    The fit is within 0.38 % of the root that `domain_extension` finds.
     """
     return 5.454 * np.exp((1.0 - D) / 0.628) + 1.499
 
@@ -110,7 +110,7 @@ def domain_extension_fit(D: Number) -> Number:
 def complete_elliptic_integrals(e: Number) -> tuple[Number, Number]:
     """Complete elliptic integrals K(e) and E(e) [1] of the modulus e, 0 <= e < 1 (Yu 2022, Eqs. 19-20).
 
-    Computed by the arithmetic-geometric mean; eight steps reach round-off for e <= 1 - 1e-12.
+    The arithmetic-geometric mean gives both integrals; eight steps reach round-off for e <= 1 - 1e-12.
     """
     a: Number = 1.0
     b: Number = np.sqrt((1.0 - e) * (1.0 + e))

@@ -12,7 +12,7 @@ def build_time() -> datetime:
 def source_date() -> datetime | None:
     """Date and time in the environment variable SOURCE_DATE_EPOCH (seconds since 1970); None if not set.
 
-    It makes written files reproducible.
+    The variable makes written files reproducible.
 
     Raises ValueError if the variable is no such number.
     """

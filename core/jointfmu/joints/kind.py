@@ -14,7 +14,7 @@ class RoughSurface:
     """Surface of a joint; its fractal parameters `PREFIX.D`, `PREFIX.G` can be fitted to measured heights.
 
     is_areal  : True: D_s and G_s of the surface; False: D and G of a profile
-    direction : direction of the profile on a textured surface, "x" or "y"; None: the one with less scatter
+    direction : direction of the profile on a textured surface, "x" or "y"; None: the one of less scatter
     """
 
     parameter_prefix: str
@@ -26,7 +26,7 @@ class FlangeRating(NamedTuple):
     """Rated values at a flange of a joint, to scale the bodies and loads of a system to the joint.
 
     load     : rated force or torque [N or N.m]
-    motion   : motion of the flange over that of the joint's output flange [1]
+    motion   : motion of the flange over motion of the joint's output flange [1]
     friction : dry friction at rest [N or N.m]
     """
 
@@ -38,7 +38,7 @@ class FlangeRating(NamedTuple):
 def use_parameters_as_law(parameters: object) -> object:
     """Return a parameter set unchanged.
 
-    It is `extract_law` of a joint whose parameter set is itself the interface law.
+    A joint whose parameter set is itself the interface law uses this function as `extract_law`.
     """
     return parameters
 
@@ -57,7 +57,8 @@ class JointKind:
     default_file_stem : stem of the file name of its default parameter file
     laws          : {name of a law: class of the joint's parameter set with this law}, the default law first.
                     Interface laws have their name in contact.laws.LAWS
-    extract_law   : function, parameter set of the joint -> that of its interface law; None if it has none
+    extract_law   : function, parameter set of the joint -> parameter set of its interface law; None if the
+                    joint has none
     laws_without_interface : names of the laws that are not the law of an interface; `extract_law` gives None
     models        : exported models; the first is the component of the joint in a system model
     surfaces      : rough surfaces whose parameters can be measured

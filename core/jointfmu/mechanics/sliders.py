@@ -60,7 +60,7 @@ def slider_heights(
 ) -> Array:
     """Heights (..., n) [m] that separate the sliders of foundations near a reference approach.
 
-    They are dense just below the reference approach, where the first springs slip, and near the first
+    The heights are dense just below the reference approach, where the first springs slip, and near the first
     contact, where the last springs slip.
 
     pressure_curve            : pressure over approach
@@ -113,7 +113,7 @@ def heights_after_liftoff(heights: Array, min_approach: ArrayLike) -> Array:
 def torsion_directions(slider_count: int) -> Array:
     """Directions (2, n) [1] in which a rotation of a patch about its centre moves its sliders.
 
-    They are unit vectors along the tangents of the circle on which the sliders lie.
+    The directions are unit vectors along the tangents of the circle on which the sliders lie.
 
     A rotation theta [rad] of a patch with the circle radius r [m] displaces a slider by r theta times this
     vector. Two sliders represent the springs between two adjacent heights (a range of springs). They are on
@@ -528,8 +528,7 @@ def small_cycle_energies(
 ) -> tuple[Number, Number]:
     """Energy loss and elastic energy [J/m2] of a cycle of small amplitude, exact in one segment of the curve.
 
-    The same energies as `cycle_energies`.
-
+    The energies are those of `cycle_energies`, without its cancellation.
     upper_derivatives, lower_derivatives : first three derivatives of the pressure, at delta and at
         delta - kappa a/mu
     """
@@ -590,8 +589,8 @@ def stick_retention(
 ) -> tuple[Number, Number]:
     """Fraction of the traction [1] that remains if the approach changes while all sliders stick.
 
-    It is 1 if the approach grows. If it decreases, springs lift off and lose their force, and the fraction is
-    below 1. Returns also the secant stiffness [Pa/m] for the tangential displacement, see
+    The fraction is 1 if the approach grows. If the approach decreases, springs lift off and lose their force,
+    and the fraction is below 1. Returns also the secant stiffness [Pa/m] for the tangential displacement, see
     `retention_and_stiffness`.
 
     stiffness_start, stiffness_end : [Pa/m] tangential stiffness

@@ -75,7 +75,7 @@ def name_in_file(declared_field: Field[Any]) -> str:
 def find_problem(name: str, value: object, declared_field: Field[object]) -> str | None:
     """Error message for the value of a declared field, one line; None if the value is valid.
 
-    It has name, value, unit and allowed values.
+    The message has name, value, unit and allowed values.
     """
     meta = declared_field.metadata
     is_real = not meta.get("whole", True) and "series" not in meta

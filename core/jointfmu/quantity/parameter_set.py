@@ -188,9 +188,9 @@ def _select_section(sections: Iterable[str], prefix: str, parameter_names: Colle
     }
     present = [section for section, section_names in names_by_section.items() if section_names]
     if len(present) > 1:
-        beside = " beside ".join(", ".join(names_by_section[section]) for section in present)
+        given = " with ".join(", ".join(names_by_section[section]) for section in present)
         raise ValueError(
-            f"{beside}: allowed is one of {', '.join(f'[{prefix}{name}]' for name in names_by_section)}"
+            f"{given}: allowed is one of {', '.join(f'[{prefix}{name}]' for name in names_by_section)}"
         )
     return present[0] if present else first
 

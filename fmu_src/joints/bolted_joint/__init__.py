@@ -64,7 +64,7 @@ def _make_single_mode_bodies(bolt_count: int) -> dict[str, object]:
 def _make_data_tables(joint: AnyBoltedJoint) -> Mapping[str, DataTable]:
     """{name: table} of numbers of a bolted joint that its C code reads as data.
 
-    These are the contact points, friction patches, sliders, bolts and modes of the members.
+    The tables have the contact points, friction patches, sliders, bolts and modes of the members.
     """
     patches = find_friction_patches(joint.pattern)
     return {

@@ -7,7 +7,7 @@
 
 OPTIMIZE_FOR_SIZE
 
-/* Row of a Jacobian from modal values in units of the last digit, and three derivatives by q. */
+/* Row of a Jacobian from modal values, stored as integers in units of the last digit, and three derivatives by q. */
 static void set_row(const int16_t *digits, const double rigid[3], double *row)
 {
     const double padded[LANES] = {rigid[0], rigid[1], rigid[2]};

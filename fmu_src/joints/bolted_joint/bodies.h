@@ -14,16 +14,16 @@ typedef struct {
     double modal_coordinates[MODES], opening[MAX_POINTS], patch_displacement[MAX_PATCHES][3];
 } Deformation;
 
-/* Rows of the Jacobians: derivatives by the modal coordinates [1], then by three components of q [1, m]: normal ones of
- * openings and elongations, tangential ones of patches. */
+/* A row of a Jacobian has derivatives by the modal coordinates [1], then by three components of q [1, m]: the normal
+ * components for openings and elongations, the tangential components for patches. */
 typedef struct {
     bool use_avx;            /* the processor has AVX */
-    double stiffness[MODES]; /* modal [N/m]; 1 of modes that are missing */
+    double stiffness[MODES]; /* modal stiffness [N/m]; 1 for unused modes */
     double opening_jacobian[MAX_OPENING][N_COLUMNS];
     double patch_jacobian[3][MAX_PATCH_DISPLACEMENT_X][N_COLUMNS];
     double elongation_jacobian[MAX_BOLT_ELONGATION][N_COLUMNS];
     Deformation state, rate; /* of the last trial, and along the last seed */
-    double start_displacement[MAX_PATCHES][3]; /* of the patches [m] at the start of the load step */
+    double start_displacement[MAX_PATCHES][3]; /* modal displacement [m] of the patches at the start of the load step */
 } Bodies;
 
 /* Read the modes from the data. */

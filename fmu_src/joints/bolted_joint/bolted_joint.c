@@ -96,7 +96,7 @@ static bool evaluate_elastic(JointModel *model, const double *inputs, const doub
     return true;
 }
 
-/* The same between rigid bodies. */
+/* Points and patches between rigid bodies. */
 static bool evaluate_rigid(JointModel *model, const double *q, const double *history, double *after, Text *reason)
 {
     Friction *friction = &model->friction;
@@ -146,9 +146,10 @@ OPTIMIZE_FOR_SIZE
 
 /* Derivatives
  *
- * At a corner they are the mean of both sides; each side has a derivative of its own. */
+ * At a corner (a jump of the derivative) each side has a derivative of its own; the FMU returns their mean. */
 
-/* A seed at inputs: q and its rate, bolt pressures with their rates, histories before and after the last evaluation. */
+/* A seed, and the state of the last evaluation: q and its rate, bolt pressures and their rates, histories before and
+ * after. */
 typedef struct {
     double q[N_DISPLACEMENTS], q_rate[N_DISPLACEMENTS], bolts[4];
     const double *seed, *history, *after;
@@ -188,7 +189,8 @@ static void deformation_rates(JointModel *model, const Seed *seed)
     }
 }
 
-/* Derivative along a seed on one side, 1 or -1 along it; true: the other side has another one. */
+/* Derivative along a seed on its side 1 (along the seed) or -1 (against it). true: the other side has another
+ * derivative. */
 static bool side_derivative(Joint *joint, const Seed *seed, double side, double *result)
 {
     JointModel *model = &joint->model;

@@ -28,7 +28,7 @@ static inline double point_approach(const Contact *contact, const double *modal_
     return contact->preload.approach[i] - (opening_at(data.points[i], q) + modal_opening[i]);
 }
 
-/* Approach of a patch whose points are all open: that of the nearest one. */
+/* Approach of a patch whose points are all open: the approach of the nearest point. */
 static double open_approach(const Contact *contact, const double *modal_opening, int j, const double *q)
 {
     double nearest = -INFINITY;
@@ -128,7 +128,7 @@ bool state_outside(const Contact *contact, double approach, int order, double *y
     return true;
 }
 
-/* Points that are evaluated together: first all segments, so that independent searches overlap. */
+/* Number of points evaluated together: the segments of all are found first, so that independent searches overlap. */
 enum { POINT_BATCH = 32 };
 typedef struct {
     double p[POINT_BATCH], k[POINT_BATCH], works[POINT_BATCH][N_LAW_STATE];

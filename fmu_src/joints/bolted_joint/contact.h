@@ -18,9 +18,9 @@ enum { TRANSFER_PATCH, TRANSFER_POINT, TRANSFER_SHARE }; /* columns of `data.pre
 typedef struct {
     bool is_current;
     double preload, moment;
-    double approach[MAX_POINTS], pressure[MAX_POINTS]; /* of the points [m, Pa] */
+    double approach[MAX_POINTS], pressure[MAX_POINTS]; /* approach [m] and pressure [Pa] of the points */
     double patch_approach[MAX_PATCHES];                 /* [m] */
-    double sums[3];                                      /* sum of the pressure [Pa], times x, times y [N/m] */
+    double sums[3]; /* sums over the points of share times pressure [Pa], times pressure and x, and y [N/m] */
 } PreloadState;
 
 /* A point: pressure with four derivatives by the approach, derivatives of its works [J/m]. Along a seed of preload,
@@ -34,7 +34,7 @@ typedef struct {
     const double *c; /* constants of the joint */
     const Curve *curve;
     SpotDistribution spots;
-    ApproachTable law; /* of first loading over the approach */
+    ApproachTable law; /* law of first loading, tabulated over the approach */
     double area;  /* nominal area of the contact [m2] */
     double weight[MAX_POINTS][6]; /* share of each point, times 1, x, y, y^2, x^2, x y */
     double pressure_transfer[MAX_PRESSURE_TRANSFER]; /* pressure of a patch over that of a point, rows of the data */

@@ -7,7 +7,7 @@
 
 enum { L = LANES };
 
-/* x less a multiple of a column, in fours from a row on. */
+/* Subtract `by` times a column from x, from row `first` on, four rows at a time. */
 static inline void subtract_column(double by, const double *restrict column, int first, double *restrict x)
 {
     for (int r = first; r < MODES; r += L)
@@ -46,7 +46,7 @@ void dense_factor(bool use_avx, Factorization *factors)
     (use_avx ? factor_avx : factor_baseline)(factors->a, factors->pivots);
 }
 
-/* Four columns at a time: the rows beside their own four side by side. */
+/* Eliminate four columns at a time: their own four rows one by one, the other rows in vectors. */
 ALWAYS_INLINE void solve(const double (*a)[MODES], const int *pivots, double *x)
 {
     for (int c = 0; c < MODES; c++) {
@@ -117,7 +117,7 @@ void dense_combine(bool use_avx, int n, const double (*by)[4], const double (*co
     (use_avx ? combine_avx : combine_baseline)(n, by, rows[0], rows[1], rows[2], rows[3], result);
 }
 
-/* Sums go in lanes, which a processor adds side by side. */
+/* Sums are split into lanes, which a processor adds in parallel. */
 
 ALWAYS_INLINE void products(int n, const double (*restrict weighted)[N_COLUMNS],
                             const double (*restrict rows)[N_COLUMNS], int size, bool all, bool resume,
@@ -171,11 +171,11 @@ void dense_add_rows(bool use_avx, int n, const double *by, const double (*row)[N
 
 ALWAYS_INLINE void dots(int n, const double (*row)[N_COLUMNS], const double *x, int stride, double *result)
 {
-    enum { ROWS = 32 }; /* at a time: first all lanes, then their sums */
+    enum { ROWS = 32 }; /* rows at a time: first the lanes of all rows, then the sums of the lanes */
     double sum[ROWS][L];
     for (int first = 0; first < n; first += ROWS) {
         const int rows = n - first < ROWS ? n - first : ROWS;
-        NOT_VECTORIZED /* the lanes of a row side by side, not those of two rows */
+        NOT_VECTORIZED /* the lanes of one row are added in parallel, not two rows */
         for (int i = 0; i < rows; i++) {
             double lane[L] = {0.0};
             for (int k = 0; k < MODES; k += L)

@@ -48,7 +48,7 @@ static inline void add_scaled(double factor, const double *restrict row, double 
         sum[k] += factor * row[k];
 }
 
-/* Stiffness of points and bolts against modal coordinates and normal motions, up to a size. */
+/* Stiffness of points and bolts against modal coordinates and normal motions; the first `size` rows and columns. */
 static void sum_normal_stiffness(Equilibrium *e, int size)
 {
     const Bodies *bodies = e->assembly.bodies;
@@ -111,12 +111,12 @@ static void factorize_jacobian(Equilibrium *e, int size, bool all, Factorization
     dense_factor(e->assembly.bodies->use_avx, factors);
 }
 
-/* Residual Jacobian at the last trial; for ranges of sliders that change by differences. */
+/* Residual Jacobian at the last trial; ranges of sliders whose contact changes are differentiated by differences. */
 static void residual_jacobian(Equilibrium *e, const double *history)
 {
     const Contact *contact = e->assembly.contact;
     const double first = contact->curve->start.x;
-    double deepest = -first; /* where the contact is closed */
+    double deepest = -first; /* largest approach [m] at tightening, from first contact on */
     for (int j = 0; j < n_patches(); j++)
         deepest = fmax(deepest, contact->preload.patch_approach[j] - first);
     traction_derivatives(e->assembly.friction, TRACTION_DIFFERENCE_STEP * deepest, history, e->derivatives);
@@ -124,8 +124,8 @@ static void residual_jacobian(Equilibrium *e, const double *history)
     factorize_jacobian(e, MODES, true, &e->factors);
 }
 
-/* The same by derivatives of the slider rules, on the side of `friction->direction`; of a further motion if the history
- * after the load step is given. */
+/* Residual Jacobian by derivatives of the slider rules, on the side of `friction->direction`; for a further motion if
+ * the history after the load step is given. */
 static void residual_jacobian_on_side(Equilibrium *e, const double *history, const double *after)
 {
     static const double units[4][4] = {{0.0, 1.0}, {0.0, 0.0, 1.0}, {0.0, 0.0, 0.0, 1.0}, {-1.0}};
@@ -182,7 +182,7 @@ static bool evaluate_normal(Equilibrium *e, const double *q, const double *modal
     return true;
 }
 
-/* The same with friction; complete: with works, losses and history. */
+/* Trial: `evaluate_normal` and friction; complete: with works, losses and history. */
 static bool evaluate_trial(Equilibrium *e, LoadStep *step, const double *q, const double *modal_coordinates,
                            bool complete, Text *reason)
 {
@@ -301,8 +301,8 @@ static void apply_broyden(Equilibrium *e, int newest)
     squares[newest] = dense_dot(correction, correction);
 }
 
-/* Trial after a correction of the modal coordinates: shortened while the energy slope at its end is too large, or
- * dropped if the Jacobian is that of an earlier trial. false: refused. */
+/* Trial after a correction of the modal coordinates. While the energy slope at its end is too large, the correction is
+ * shortened; it is dropped if the Jacobian belongs to an earlier trial. false: refused. */
 static bool search_line(Equilibrium *e, LoadStep *step, const double *q, const double *correction,
                         bool jacobian_is_current, bool complete, double *modal_coordinates, double *r,
                         double *tolerance, bool *is_full, Text *reason)
@@ -320,19 +320,19 @@ static bool search_line(Equilibrium *e, LoadStep *step, const double *q, const d
         const double slope_1 = dense_dot(r, correction);
         if (length == 0.0 || !(slope_1 > MAX_FINAL_OVER_INITIAL_ENERGY_SLOPE * fabs(slope_0)))
             return true;
-        const double zero = slope_0 < 0.0 ? slope_0 / (slope_0 - slope_1) : 0.0; /* of the energy slope, if any */
+        const double zero = slope_0 < 0.0 ? slope_0 / (slope_0 - slope_1) : 0.0; /* at zero energy slope, if any */
         length *= jacobian_is_current ? fmax(zero, MIN_OVER_PREVIOUS_CORRECTION_LENGTH) : 0.0;
         *is_full = false;
     }
     return true;
 }
 
-/* Equilibrium at a step fraction, from modal coordinates on; if it is not found, the residual that is left [N]. */
+/* Equilibrium at a step fraction, starting from modal coordinates; `left` [N]: residual, if none is found. */
 static NewtonResult solve_newton(Equilibrium *e, LoadStep *step, double step_fraction, double *modal_coordinates,
                                  double *left, Text *reason)
 {
     const double tolerance_factor = step_fraction == 1.0 ? 1.0 : INTERMEDIATE_TOLERANCE_FACTOR;
-    const Factorization *factors = &e->start.factors; /* of the Jacobian: first that at the start of the load step */
+    const Factorization *factors = &e->start.factors; /* first Jacobian: at the start of the load step */
     double q[N_DISPLACEMENTS], r[MODES], tolerance, last_norm = INFINITY;
     bool jacobian_is_current = false, is_full;
     displacement_at(step, step_fraction, q);

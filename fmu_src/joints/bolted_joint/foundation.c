@@ -7,8 +7,8 @@
 #include "optimize_for_size.h"
 #include "simd.h"
 
-/* Properties of both sliders of a range at an approach: stiffness, its slope, limits of the early and the late one; or
- * their rates. */
+/* Properties of both sliders of a range at an approach: stiffness, its slope, limits of the early and the late slider;
+ * or their rates. */
 typedef struct {
     double K, slope, limit[2];
 } SliderProperties;
@@ -152,7 +152,7 @@ PatchState patch_state(const Foundation *f, double approach, int near)
     return p;
 }
 
-/* Arguments of `partial_contact`. Those before X_LOAD have no rates: `constant_count` in native.py counts them. */
+/* Arguments of `partial_contact`. Arguments before X_LOAD have no rates: `constant_count` in native.py counts them. */
 enum { X_RATIO, X_MU, X_LOAD, X_STIFFNESS, X_BEND, X_WIDTH, N_PARTIAL_CONTACT };
 enum { N_CONSTANT_ARGUMENTS = X_LOAD };
 
@@ -451,7 +451,7 @@ static inline double limit_sum(const SliderProperties *pair)
     return pair->limit[0] + pair->limit[1];
 }
 
-/* Its arguments at both ends of an increment, or their rates. */
+/* Arguments of `retention_and_stiffness` at both ends of an increment, or their rates. */
 static inline void set_range_ends(const Foundation *f, const SliderProperties *start, const SliderProperties *end,
                                   double change, double *x)
 {
@@ -676,9 +676,9 @@ OPTIMIZE_FOR_SIZE
 
 /* Rates
  *
- * Forces have corners: where a slider at its limit slips in one direction and sticks in the other, where a path ends at
- * a height, and where the load of springs stays on it, as those that lift off take their force with them. Each rate is
- * that on the side to which a direction points. */
+ * Forces have corners (jumps of the derivative) at three places: where a slider at its limit slips in one direction and
+ * sticks in the other; where a path ends at a height; and where the load of springs stays on a height, as springs that
+ * lift off take their force with them. Each rate is the rate on the side to which a direction points. */
 
 /* An increment, its rates, and the rates that point to the side on which they are taken. */
 typedef struct {
@@ -729,7 +729,7 @@ static PropertiesRate properties_rate(const Foundation *f, int i, const PatchSta
     const double rates[] = {(p->y[1] - f->stiffness[i]) * rate, p->y[2] * rate, bend * rate, rate};
     memcpy(x + N_PARTIAL_CONTACT, rates, sizeof rates);
     partial_contact_seed(x, NULL, &pairs.rate.K);
-    if (p->approach == f->height[i + 1]) { /* all touch: the same numbers, whose rates are of one side */
+    if (p->approach == f->height[i + 1]) { /* all springs touch: equal properties, with rates of one side */
         PatchState all = *p;
         all.full_ranges = i + 1;
         const SliderProperties full = slider_properties(f, i, &all);
@@ -739,7 +739,7 @@ static PropertiesRate properties_rate(const Foundation *f, int i, const PatchSta
     return pairs;
 }
 
-/* Arguments of `return_map_2d`; in its seed rates of those from P_RETENTION on follow. */
+/* Arguments of `return_map_2d`; in its seed, rates of the arguments from P_RETENTION on follow. */
 enum { P_FORCE, P_RETENTION = 2, P_SECANT, P_DISPLACEMENT, P_LIMIT_START = 6, P_LIMIT_END, P_K, P_PER_K, N_PLANE };
 
 /* Relative distance of an elastic predictor from its limit [1] up to which it is at the limit. */
@@ -802,8 +802,8 @@ static MappingRate return_map_rate(double x[2 * N_PLANE - P_RETENTION], const do
     return slid;
 }
 
-/* Rates of the arguments of a slider k of a range: its stiffness and limits before and after have rates, the shift is
- * that of a part of the path. */
+/* Rates of the arguments of slider k of a range: rates of its stiffness, of its limits before and after, and of the
+ * displacement over a part of the path. */
 static void argument_rates(const Foundation *f, int k, const double gains[2], const IncrementRate *rates, double part,
                          const double limits[2], double K_rate, double per_K, double out[N_PLANE - P_RETENTION])
 {
@@ -887,7 +887,7 @@ static double loss_rate(const SideRates *c, double x[2 * N_VARYING_LOSS - 3])
     return is_along_x < 0.0 ? fmin(rate, 0.0) : fmax(rate, 0.0);
 }
 
-/* Rates of the sliders of a range that is not all in contact, on one side of a path, whose points are given. */
+/* Rates of the sliders of a range in partial contact, on one side of a path; start, end and middle are given. */
 static void partial_range_rate(const Foundation *f, int i, const SideRates *c, const PatchState *from,
                                const PatchState *to, const PatchState *middle, SliderUpdate *rate)
 {
@@ -957,7 +957,7 @@ static void slider_height_rates(const Foundation *f, double rate, double height[
     curve_evaluate(f->curve, f->onset_approach, 1, y);
     const bool follow = y[0] > MIN_REFERENCE_OVER_END_LOAD * end && y[0] < MAX_REFERENCE_OVER_END_LOAD * end;
     memset(height, 0, N_HEIGHTS * sizeof *height);
-    /* loads in proportion below, in that of their logarithm above */
+    /* below, heights at fixed ratios of the load; above, at equal steps of its logarithm */
     for (int i = 1; i < N_HEIGHTS - 1 && follow; i++) {
         const double part = i > N_BELOW ? fmax(i - 2 - N_BELOW + f->offset, 0.0) / (double)N_ABOVE : 0.0;
         const double load = f->load[i] / y[0] * (1.0 - part * part) * y[1] * rate;
@@ -1046,10 +1046,11 @@ static void add_full_range_rates(const Foundation *f, int n, const SideRates *c,
     }
 }
 
-/* Rates of a range i > 0 whose springs begin to touch beyond the end of a path. Their limits are of second order, and
- * none of their force is left. They slip along the shift, and are stiff across it alone, where it is larger than what
- * the load rises by lets stick; where the load falls to the height, along the part of their force that they keep, and
- * the shift. Where nothing moves, each goes along as its neighbour below: it slips where that is at its limit. */
+/* Rates of a range i > 0 whose springs begin to touch beyond the end of a path. The limits of its sliders are of second
+ * order, and no force is left in them. If the displacement is larger than the increase of the load lets stick, the
+ * sliders slip along the displacement, and are stiff across it only. If the load falls to the height, they slip along
+ * the sum of the displacement and the part of their force that they keep. Without displacement, each slider behaves as
+ * its neighbour of the range below: it slips if the neighbour is at its limit. */
 static void add_contact_onset_rate(const Foundation *f, int i, const SideRates *c, const PatchState *from,
                                    const PatchState *to, SliderUpdate *rate)
 {

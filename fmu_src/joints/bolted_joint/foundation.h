@@ -8,25 +8,26 @@
 
 enum {
     N_HEIGHTS = N_BELOW + N_ABOVE + 3,
-    N_RANGES = N_HEIGHTS - 1,         /* of springs between two heights; each has two sliders */
-    FOUNDATION_SLIDERS = 2 * N_RANGES /* in the order of the heights, of each range first the one that slips earlier */
+    N_RANGES = N_HEIGHTS - 1, /* ranges of springs between two heights; each has two sliders */
+    FOUNDATION_SLIDERS = 2 * N_RANGES /* in the order of the heights; of each range the slider that slips first, then
+                                         the other one */
 };
 
-_Static_assert((int)FOUNDATION_SLIDERS <= (int)MAX_SLIDERS, "in one call");
+_Static_assert((int)FOUNDATION_SLIDERS <= (int)MAX_SLIDERS, "all sliders of a patch in one call");
 
 typedef struct {
     const Curve *curve;
     double mu, ratio;     /* friction coefficient, stiffness ratio K_T/K_N [1] */
     const double *torsion_directions[2]; /* unit vectors of the sliders on the circle of the patch */
-    double offset;         /* of the heights [1], see `slider_heights` */
+    double offset;         /* offset of the heights [1], see `slider_heights` */
     double onset_approach; /* reference approach of the heights [m] */
-    double min_approach;   /* smallest approach since then [m] */
-    int liftoff_height;    /* the height that moved down to it from `replaced_height` [m]; 0: none */
+    double min_approach;   /* smallest approach [m] since the heights were set */
+    int liftoff_height;    /* index of the height that moved from `replaced_height` [m] to `min_approach`; 0: none */
     double replaced_height;
     double height[N_HEIGHTS], load[N_HEIGHTS], stiffness[N_HEIGHTS]; /* [m], [Pa] and [Pa/m] of the curve there */
-    double normal_stiffness[N_RANGES]; /* of all springs of a range [Pa/m] */
-    double normal_force[N_RANGES];     /* of a range when its last spring touches [Pa] */
-    double force_deviation[N_RANGES];  /* of each slider from their mean normal force, from then on [Pa] */
+    double normal_stiffness[N_RANGES]; /* stiffness of all springs of a range [Pa/m] */
+    double normal_force[N_RANGES];     /* normal force of a range when its last spring touches [Pa] */
+    double force_deviation[N_RANGES];  /* then: deviation of both sliders from their mean normal force [Pa] */
     /* Sliders of ranges in full contact: tangential stiffness K, 1/K, and the limit at zero approach, from which it
      * increases by K mu/ratio. */
     double K[FOUNDATION_SLIDERS], per_K[FOUNDATION_SLIDERS], limit_at_zero_approach[FOUNDATION_SLIDERS];
@@ -88,8 +89,8 @@ typedef struct {
     double results[N_MAPPING][BATCH_SIZE];
 } SimdBatch;
 
-/* Derivatives of these arguments: of the displacement by one around the centre, of limit and displacement by
- * opening. */
+/* Derivatives of the arguments of a batch: of the displacement by the displacement around the centre, and of limit and
+ * displacement by the opening. */
 typedef struct {
     double torsion_directions[2][BATCH_SIZE], limit_rate[BATCH_SIZE], displacement_rate[2][BATCH_SIZE];
 } OpeningBatch;
@@ -98,27 +99,28 @@ typedef struct {
 typedef struct {
     SimdBatch batch;
     OpeningBatch opening;
-    bool forces_only; /* up to the next `foundations_finish`: tractions, without tangents and losses */
+    bool forces_only; /* until the next `foundations_finish`, only tractions are computed, no tangents and losses */
     int n;
     Run runs[BATCH_SIZE / 2];
 } SliderWork;
 
 /* Set all heights for an onset approach; curve, mu, ratio, directions and offset are given. */
 void foundation_set_heights(Foundation *foundation, double onset_approach);
-/* Move the first height above the smallest approach so far down to it. */
+/* Move the first height above the smallest approach since the onset down to this approach. */
 void heights_after_liftoff(Foundation *foundation, double min_approach);
 /* Find the numbers of ranges in contact. */
 void find_ranges(const Foundation *foundation, PatchState *state);
 /* State at an approach; the search starts with a number of ranges in full contact. */
 PatchState patch_state(const Foundation *foundation, double approach, int near);
 /* Return-map all sliders for one increment. `force_end` gets the forces along x and along y of the sliders that touch
- * during it; those along y are left out if it is along x under constant load. Results of sliders that slip are known
- * after `foundations_finish`. */
+ * during the increment; forces along y are left out if the increment is along x under constant load. Results of sliders
+ * that slip are known after `foundations_finish`. */
 void foundation_advance(const Foundation *foundation, const PatchIncrement *path, double *const force_end[2],
                         SliderWork *work, SliderUpdate *update);
 void foundations_finish(SliderWork *work);
 /* Derivatives of the traction after an increment by displacements along x, along y and around the centre, and by
- * opening; those of ranges that change by differences over a step [m]. `trial_force` is room for slider forces. */
+ * opening. Ranges whose contact changes are differentiated by differences over a step [m]. `trial_force` is room for
+ * slider forces. */
 void foundation_traction_derivatives(const Foundation *f, const PatchIncrement *path, double step,
                                      double *const trial_force[2], SliderWork *work, double derivatives[4][3]);
 /* Tangential stiffness in full stick. */
@@ -126,14 +128,14 @@ double stick_stiffness(const Foundation *foundation, const PatchState *state);
 /* Update in full stick from a traction; false: it exceeds what FULL_STICK_OVER_GROSS_SLIP_DISPLACEMENT allows. */
 bool full_stick_update(const Foundation *foundation, const PatchIncrement *path, const double traction[3],
                        SliderUpdate *update);
-/* Its rate, from rates of the increment, on the side to which `direction` points; true: the increment ends at a corner,
- * where the other side has another rate. */
+/* Rate of `full_stick_update`, from rates of the increment, on the side to which `direction` points; true: the
+ * increment ends at a corner, where the other side has another rate. */
 bool full_stick_rates(const Foundation *foundation, const PatchIncrement *path, const double traction[3],
                       const IncrementRate *direction, const IncrementRate *rates, SliderUpdate *rate);
 /* Distribute a traction of full stick to the sliders, by stiffness. */
 void distribute_stick_force(const Foundation *foundation, const PatchState *state, const double traction[3],
                             double *const force[2]);
-/* Rate of `foundation_advance`, as `full_stick_rates`. */
+/* Rate of `foundation_advance`; arguments and result are as for `full_stick_rates`. */
 bool foundation_rates(const Foundation *foundation, const PatchIncrement *path, const IncrementRate *direction,
                       const IncrementRate *rates, SliderUpdate *rate);
 

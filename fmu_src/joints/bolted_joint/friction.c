@@ -16,7 +16,7 @@ static inline const double *forces_of(const double *history, int j)
     return history + HISTORY_FORCE + j * PATCH_FORCES;
 }
 
-/* Set the heights of a patch, unless they are these; the ranges of its states are found again. */
+/* Set the heights of a patch, unless they are set already; find the ranges in contact of its states again. */
 static void set_heights(Friction *friction, int j, double onset_approach, double min_approach)
 {
     Foundation *f = &friction->foundation[j];
@@ -211,7 +211,7 @@ void update_without_history(Friction *friction, const Contact *contact, const do
 
 /* Tangents */
 
-/* The same of a patch, with its sliders around its centre. */
+/* Stiffness of a patch as of `point_stiffness`, with the stiffness of its sliders around its centre. */
 static inline void directional_stiffness(const double *patch, const double tangent[6], double stiffness[3])
 {
     const double share = patch[SHARE], radius = patch[RADIUS];
@@ -220,8 +220,8 @@ static inline void directional_stiffness(const double *patch, const double tange
                              radius * radius * tangent[5]);
 }
 
-/* Stiffness against S_X, S_Y, THETA_Z: with all sliders sticking; what it lacks if all sliders at their limits slip;
- * and the lack with the sign of the traction along the motion. */
+/* Stiffness against S_X, S_Y, THETA_Z: `stick` if all sliders stick; `lack`, its decrease if all sliders at their
+ * limits slip; `signed_lack`, the decrease with the sign of the traction along the motion. */
 typedef struct {
     double stick[3], lack[3], signed_lack[3];
 } TangentSums;
@@ -240,7 +240,7 @@ static TangentSums sum_tangents(const Friction *friction, const double *stick_st
             less[d] = all[d] - updates[j].tangent[d];
         directional_stiffness(patch, all, stick);
         directional_stiffness(patch, less, lack);
-        point_stiffness(patch, less, centred); /* around its centre as many sliders slip in both directions */
+        point_stiffness(patch, less, centred); /* about its centre, equally many sliders slip in both directions */
         for (int d = 0; d < 3; d++) {
             sums.stick[d] += stick[d];
             sums.lack[d] += lack[d];

@@ -1,8 +1,8 @@
 /* Repeats friction.py of the package: friction of all patches with its history variables.
  *
  * Histories are arrays of N_HISTORY numbers, whose parts begin at HISTORY_STATE, ... While all patches are in full
- * stick, the history has their tractions in place of slider forces: in the first slider along x and along y, and around
- * the centre of the patch in the second one along y. */
+ * stick, the history has their tractions in place of slider forces: the tractions along x and along y are stored as
+ * forces of the first slider, the traction around the centre as the force along y of the second slider. */
 #ifndef JOINTFMU_FRICTION_H
 #define JOINTFMU_FRICTION_H
 
@@ -30,9 +30,10 @@ typedef struct {
     PatchState start[MAX_PATCHES], end[MAX_PATCHES];
     double increment[MAX_PATCHES][3];
     SliderUpdate update[MAX_PATCHES];
-    /* Of `continued_motion_stiffness`: its signs are the directions in which more patches slip. */
+    /* Sum of `continued_motion_stiffness`: its signs are the directions in which more patches slip. */
     double traction_sum[3];
-    /* Rates along the last seed, on the side 1 or -1 along it; rates of the increments that point to this side. */
+    /* Rates along the last seed on a side: 1 along the seed, -1 against it; rates of the increments that point to this
+     * side. */
     double side;
     IncrementRate direction[MAX_PATCHES];
     bool is_corner; /* the other side has other rates */
@@ -45,15 +46,15 @@ void friction_tabulate(Friction *friction, const Contact *contact, bool use_avx)
 void set_increments(Friction *friction, const Bodies *bodies, const double *history, const double *q);
 /* Tractions and tangents of the patches after their increments to the patch approaches, without losses. */
 void update_traction(Friction *friction, const Contact *contact, const double *history, const double *q);
-/* The same with losses, and the history after it. */
+/* Tractions, tangents and losses of the patches after their increments, and the history at the end. */
 void update_friction(Friction *friction, const Contact *contact, const double *history, const double *q, double *after);
 /* Without history: the states of the patches at their approaches, and a history that stays as it is. */
 void update_without_history(Friction *friction, const Contact *contact, const double *history, double *after);
 
-/* Derivatives of the tractions after the last increments; those of ranges that change by differences over an opening
- * `step` [m]. */
+/* Derivatives of the tractions after the last increments. Ranges whose contact changes are differentiated by
+ * differences over an opening `step` [m]. */
 void traction_derivatives(Friction *friction, double step, const double *history, TractionDerivatives *derivatives);
-/* The same from a tangent xx, xy, yy, xt, yt, tt, with the opening left out. */
+/* Traction derivatives from a tangent xx, xy, yy, xt, yt, tt; without derivatives by the opening. */
 void derivatives_of_tangent(const double tangent[6], TractionDerivatives derivatives);
 /* Tangent while all sliders of a patch stick, from their stiffness. */
 static inline void stick_tangent(double stiffness, double tangent[6])
@@ -74,7 +75,7 @@ static inline void point_stiffness(const double *point, const double *tangent, d
 
 /* Heights of the sliders as the next update from a history sets them. */
 void set_heights_from(Friction *friction, const double *history);
-/* Rates of the increments along a seed, from those of the points and of the bodies. */
+/* Rates of the increments along a seed, from the rates of the points and of the bodies. */
 void increment_rates(const Friction *friction, const Contact *contact, const Bodies *bodies, const double *q_rate,
                      const double bolts[4], IncrementRate *rates);
 /* Take rates on the side to which the patches move. */
@@ -83,7 +84,7 @@ void set_direction(Friction *friction, const IncrementRate *rates);
  * the last update, from which a further motion starts. */
 SliderUpdate update_rate(Friction *friction, int j, const double *history, const double *after, double approach_rate,
                          const double displacement_rate[3]);
-/* The same of all patches, in `friction->rate`. */
+/* Rates of the updates of all patches, in `friction->rate`. */
 void update_rates(Friction *friction, const double *history, const double *after, const IncrementRate *rates);
 /* Rate of `continued_motion_stiffness`. */
 void continued_motion_stiffness_rate(const Friction *friction, const IncrementRate *rates, double stiffness[3]);

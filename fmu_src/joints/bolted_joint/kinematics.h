@@ -24,7 +24,7 @@ static inline int n_patches(void)
     return (int)data.n_patches;
 }
 
-/* Place of a component in the inputs. */
+/* Index of a component of q in the inputs. */
 static inline int input_of(int component)
 {
     return component < THETA_X ? INPUT_S_REL_X + component : INPUT_THETA_X + component - THETA_X;
@@ -49,7 +49,7 @@ static inline double opening_at(const double *point, const double q[N_DISPLACEME
     return rigid_opening(point[POSITION_X], point[POSITION_Y], q);
 }
 
-/* Its derivative by S_Z, THETA_X, THETA_Y [1, m]. */
+/* Derivative of the rigid opening by S_Z, THETA_X, THETA_Y [1, m]. */
 static inline void opening_jacobian(double x, double y, double row[3])
 {
     row[0] = 1.0;
@@ -76,7 +76,7 @@ static inline void tangential_displacement(const double *patch, const double q[N
     u[2] = q[THETA_Z] * patch[RADIUS];
 }
 
-/* Its derivatives by S_X, S_Y, THETA_Z [1, m]. */
+/* Derivatives of the displacement of a patch by S_X, S_Y, THETA_Z [1, m]. */
 static inline void tangential_jacobian(const double *patch, double rows[3][3])
 {
     const double jacobian[3][3] = {

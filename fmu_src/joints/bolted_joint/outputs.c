@@ -137,7 +137,7 @@ void use_preload_sums(OutputSums *sums, const Contact *contact)
 
 /* Patches */
 
-/* Add the traction of a patch, with that of its sliders around its centre; or its rate. */
+/* Add the traction of a patch, including the traction around its centre; or its rate. */
 static inline void add_patch(double *x, const double *patch, const double traction[3])
 {
     add_traction(x, patch, traction);
@@ -167,7 +167,7 @@ static inline double energy_at(const Contact *contact, double approach, double *
     return energy;
 }
 
-/* The same inside the table, without the slope. */
+/* Integral and load as from `energy_at`, faster inside the table; no slope. */
 static inline double energy_and_load(const Contact *contact, double approach, double *load)
 {
     const Curve *curve = contact->curve;
@@ -183,7 +183,7 @@ static inline double energy_and_load(const Contact *contact, double approach, do
     return segment_energy(curve, segment, t);
 }
 
-/* Arguments of `cycle_energies` and `small_cycle_energies`; the seeds have rates of those from the amplitude on. */
+/* Arguments of `cycle_energies` and `small_cycle_energies`; seeds have rates of the arguments from L_AMPLITUDE on. */
 enum {
     L_MU, L_RATIO, L_AMPLITUDE, L_LOAD, L_SLIPPED_LOAD, L_ENERGY, N_CYCLE,
     L_UPPER = L_LOAD, L_LOWER = L_UPPER + 3, N_SMALL_CYCLE = L_LOWER + 3
@@ -195,7 +195,7 @@ static inline bool is_small_amplitude(const PatchState *state, double reach)
     return reach * state->y[1] < SMALL_CYCLE_FORCE_OVER_LOAD * state->y[0];
 }
 
-/* Load with four derivatives at the approach of a patch, and at that of the springs that slip last. */
+/* Load with four derivatives at the approach of a patch, and at the height of the springs that slip last. */
 static inline void cycle_ends(const Contact *contact, const PatchState *state, double reach, double upper[5],
                               double lower[5])
 {
@@ -280,7 +280,7 @@ OPTIMIZE_FOR_SIZE
 
 /* Elastic bodies */
 
-/* Stiffness of the joint, or its rate, without that of the bolts between rigid bodies, over the area. */
+/* Stiffness of the joint over the area, or its rate, without the stiffness of bolts between rigid bodies. */
 static void set_condensed(const Equilibrium *e, const double stiffness[N_DISPLACEMENTS], double bolt_stiffness,
                           double *x)
 {
@@ -357,7 +357,7 @@ bool max_pressure_rate(const OutputSums *sums, const Contact *contact, double si
         const double *y = contact->rate[i].derivatives, pressure_rate = y[1] * contact->rate[i].approach;
         if (y[0] < (1.0 - SAME_PRESSURE) * sums->p_max)
             continue;
-        if (!is_known) /* of equal pressures: the one that increases most, on the other side least */
+        if (!is_known) /* of equal pressures, take the one that increases most; on the other side, least */
             first = *rate = pressure_rate;
         is_known = true;
         is_corner = is_corner || pressure_rate != first;
@@ -428,7 +428,7 @@ void add_gap_rates(const Bolts *bolts, const double *q_rate, double *dx)
         add_elongation(data.bolts[b], bolts->count * bolt_gap_rate(bolts, b, rigid_elongation(b, q_rate)), dx);
 }
 
-/* Rates of the condensed stiffness. By stationarity only tangents change it, at constant modal rates. */
+/* Rates of the condensed stiffness. It is stationary in the modal rates, so only changes of the tangents matter. */
 static void condensed_rates(const Equilibrium *e, double rates[N_DISPLACEMENTS])
 {
     const Bodies *bodies = e->assembly.bodies;

@@ -48,7 +48,7 @@ def generate_sources(fmu_name: str, parameters: ParameterFile) -> dict[str, str]
 def generate_code(model: Model, parameters: ParameterFile, parameter_split: ParameterSplit) -> dict[str, str]:
     """{file name: text} of all C sources of an FMU except data.c.
 
-    They are the same for all parameter files of one structure: files with the same generated code.
+    The sources are the same for all parameter files of one structure: files with the same generated code.
     """
     native = load_native_definition(model)
     files = _read_handwritten_files(model, native)

@@ -40,7 +40,7 @@ def compiled_model_folder() -> Path:
 def stored_result_folder() -> Path:
     """Cache folder of the stored results of long computations of the package `jointfmu`.
 
-    These are reduced contact points and friction patches of bolted joints.
+    The results are reduced contact points and friction patches of bolted joints.
     """
     return cache_folder() / "results"
 
@@ -52,14 +52,12 @@ def compiler_cache_folder() -> Path:
 
 
 def check_cache_access(path: Path) -> None:
-    """Raise ValueError if another user may have changed a file or folder of the cache.
-
-    The owner and the write access of the path and of its parents in the cache are checked.
+    """Check owner and write access of a path in the cache and of its parents up to the cache folder.
 
     A missing path, a path outside the cache, and any path on Windows pass.
 
     Raises ValueError, one line, if a path belongs to another user than this one and root, or is writable
-    for every user.
+    for every user: another user may then have changed its content.
     """
     if sys.platform == "win32":
         return

@@ -334,7 +334,7 @@ def test_elastic_joint_warns_beyond_its_friction():
 
 @each_load
 def test_without_turns_the_forces_are_those_of_all_nodes(spring, preload, moment):
-    """The few points that carry the normal force give that of all nodes within 1e-5 of the bolt force."""
+    """The few points give the normal force of all nodes within 1e-5 of the bolt force."""
     nodes = BoltedJointSpring.for_interface_nodes(JOINT)
     for z in (-3e-6, -1e-6, 1e-6, 3e-6):
         few, all_ = (

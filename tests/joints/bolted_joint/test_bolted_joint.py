@@ -221,7 +221,7 @@ def test_pressed_together_it_gets_stiffer(spring):
 
 
 def test_pulled_apart(spring):
-    """After separation the force is that of the lost preload, without stiffness and damping."""
+    """After separation the force equals the lost preload, without stiffness and damping."""
     for preload, moment in LOADS:
         apart = float(np.max(spring.preloaded_approach(preload, moment)) - spring.curve.displacement[0])
         out = spring.evaluate(preload, moment, (1e-6, -2e-6, apart * (1.0 + 1e-12)), (1e-3, 1e-3, 1e-3))

@@ -260,7 +260,7 @@ def test_an_accepted_state_tells_the_tangent_of_a_further_motion(fmu: Host, host
     """For any previous steps, K_yy, K_rz and derivatives agree with differences of the same instance.
 
     Along x, sliders are at their limits. K_xx is the slope if the motion continues (they slip on); the
-    derivative is the mean of this slope and of that for a reversal (they stick).
+    derivative is the mean of this slope and of the slope after a reversal (they stick).
     """
     end, found = 0.6e-6, []
     for steps in (1, 7, 200):

@@ -247,7 +247,7 @@ def test_python_takes_a_torque_too(capsys, tmp_path):
     file = load_parameter_file(path)
     assert joint.file.inputs == file.inputs
     assert joint.file.ranges == file.ranges
-    with pytest.raises(ValueError, match=r"^torque beside preload: state one of them"):
+    with pytest.raises(ValueError, match=r"^torque with preload: state one of them"):
         jointfmu.bolted_joint(**sizes, torque=84, preload="43kN")
 
 
@@ -514,7 +514,7 @@ def test_numbers_of_the_drawing_are_in_the_file(capsys, tmp_path):
     )
     assert joint.bolt_stiffness == facts["bolt_stiffness"]
     text = path.read_text()
-    assert text.splitlines()[1].startswith("# Computed beside the parameters")
+    assert text.splitlines()[1].startswith("# Computed in addition to the parameters")
     assert "# member_stiffness = " in text
 
 
@@ -647,7 +647,7 @@ def test_stated_ranges_are_in_the_file(capsys, tmp_path):
         (["--bolts", "4xM13"], "thread M13 is unknown, allowed are M3, M4"),
         (["--bolts", "0xM12"], "--bolts = '0xM12' are no bolts"),
         (["--bolts", "5xM12"], "5 bolts on a rectangle: expected --grid"),
-        (["--bolts", "M12"], "--at LxW beside one bolt: expected the number of --bolts, as in 4xM12"),
+        (["--bolts", "M12"], "--at LxW for one bolt: expected the number of --bolts, as in 4xM12"),
         (["--mu", "15"], "--mu = '15' is outside (0, 2]: coefficient of friction of metals"),
         (["--at", "220x60"], "bolt 1 at (-110, -30) mm is not inside the plate"),
         (["--at", "190x60"], "is not inside the plate; allowed are |x| < 0.09325 m"),
@@ -656,7 +656,7 @@ def test_stated_ranges_are_in_the_file(capsys, tmp_path):
         (["--at", "160x60", "80x30"], "expected one LxW, or the place X,Y of each bolt"),
         (["--grid", "3x2"], "--grid = 3x2 has 6 bolts, but --bolts states 4"),
         (["--grid", "2"], "--grid = '2' is not a grid"),
-        (["--circle", "80"], "--at beside --circle: expected one of them"),
+        (["--circle", "80"], "--at with --circle: expected one of them"),
         (["--grip", "0"], "--grip = '0' is outside (0, inf)"),
         (["--grip", "1", "2", "3"], "--grip has 3 values, expected both plates together, or each"),
         (["--tapped", "--grip", "10", "30"], "--grip has 2 values, expected that of side 1"),
@@ -679,7 +679,7 @@ def test_stated_ranges_are_in_the_file(capsys, tmp_path):
         (["--washers", "0.03x0.004"], "if it is in m, write 0.03m (30 mm)"),
         (["--washers", "--hole", "20"], "--hole = 20 mm is outside (12, 19."),
         (["--preload", "-1"], "--preload = '-1' is outside (0, inf)"),
-        (["--torque", "84", "--preload", "43e3"], "--torque beside --preload: state one of them"),
+        (["--torque", "84", "--preload", "43e3"], "--torque with --preload: state one of them"),
         (["--head-friction", "0.1"], "--head-friction has no effect without --torque"),
         (["--torque", "84kN"], "--torque = '84kN': unit 'N.m' does not measure what 'kN' does"),
         (["--bolts", "4xM12x1"], "allowed pitches of M12 are 1.75, 1.5, 1.25 mm"),
@@ -763,7 +763,7 @@ def test_the_fmu_of_a_drawing_is_the_package(capsys, tmp_path):
 @pytest.mark.slow
 def test_a_computed_field_is_near_the_cones(capsys, tmp_path, enter):
     """The field by finite elements of three times the size, whose error is far below the tolerance, is near
-    that of the cones."""
+    the field of the cones."""
     enter(coarse.elements(BoltedContact, 0.35))
     files = {}
     for field in ("cones", "computed"):

@@ -92,8 +92,8 @@ def stiffness(spring):
     ("words", "preload"), [(FOUR, 15e3), ([*M16, "--attached", "heads"], PRELOAD)], ids=["faces", "heads"]
 )
 def test_the_tightened_joint_is_as_stiff_as_by_finite_elements(made, words, preload):
-    """The stiffness is within 3 % of that by finite elements, because modes have four digits and few points
-    represent the contact."""
+    """The stiffness is within 3 % of the result by finite elements, because modes have four digits and few
+    points represent the contact."""
     joint = made(*words, preload=preload)
     out, _ = at(joint.spring, *STILL, preload=preload)
     found = [out[name] for name in AXES]
@@ -111,8 +111,8 @@ def test_gross_slip_about_poles_inside_has_the_force_of_all_nodes(made):
 
 
 def test_the_report_states_the_whole_beside_its_parts(made):
-    """The shares of the compliance are within 0.02 of those of the finite elements; the page does not mention
-    rigid sides."""
+    """The shares of the compliance are within 0.02 of the shares by finite elements; the page does not
+    mention rigid sides."""
     joint = made(*FOUR, preload=15e3)
     found = joint.spring.compliances(15e3)
     out, _ = at(joint.spring, *STILL, preload=15e3)
@@ -213,7 +213,7 @@ def test_a_load_at_the_faces_hardly_reaches_the_bolts(made):
 
 
 def test_embedding_takes_of_the_preload(made):
-    """All results are those of the remaining preload; an embedding loss as large as the preload
+    """All results are calculated with the remaining preload; an embedding loss as large as the preload
     leaves none."""
     joint = made(*FOUR, preload=15e3)
     lost = BoltedJointSpring.for_joint(replace(joint.file.values, embedding=800.0))
@@ -459,7 +459,7 @@ def test_what_does_not_go_with_elastic_sides_is_refused(made, tmp_path, capsys):
     line = refused_line(capsys, "new", "bolted-joint", *FOUR, "--thickness", "10", "12")
     assert "--thickness = 10 and 12 mm contradicts --grip = 20 mm" in line
     line = refused_line(capsys, "new", "bolted-joint", *FOUR, "--tapped", "--sides", "elastic")
-    assert "--sides elastic beside --tapped" in line
+    assert "--sides elastic with --tapped" in line
 
 
 def test_a_path_far_into_slip_and_opening_is_found_with_few_parts(made):
@@ -491,7 +491,7 @@ def test_a_path_far_into_slip_and_opening_is_found_with_few_parts(made):
 
 
 def test_long_steps_back_from_gross_slip_are_found(made):
-    """After gross slip, the derivative at the start of the return path is far from that along the path."""
+    """After gross slip, the slope at the start of the return path is far from the slope along the path."""
     spring, rng = made(*M16, "--attached", "heads").spring, np.random.default_rng(1)
     unit = np.array([5e-6, 5e-6, 5e-6, 1e-4, 1e-4, 3e-4])
     a, b = rng.uniform(-1.0, 1.0, (3, 2, 6))[2] * unit

@@ -268,7 +268,7 @@ def test_a_file_with_both_sections_is_refused(imported, tmp_path):
     path = tmp_path / "joint.toml"
     pattern = format_parameter_file(FILE).partition("[pattern]\n")[2].partition("\n[")[0]
     path.write_text(f"{format_parameter_file(imported[0])}\n[pattern]\n{pattern}\n")
-    with pytest.raises(ValueError, match=r"joint.toml: pattern\.\w+, .* beside field\.share, .*") as error:
+    with pytest.raises(ValueError, match=r"joint.toml: pattern\.\w+, .* with field\.share, .*") as error:
         load_parameter_file(path, "bolted_joint")
     assert str(error.value).endswith(": allowed is one of [pattern], [plate], [field]")
     assert "\n" not in str(error.value)

@@ -144,7 +144,7 @@ def test_zeta_is_the_exponent():
 @each
 def test_the_closing_is_short(spring):
     """The closing ends where the area of the largest spot is CLOSING_END_OVER_PLASTIC_SPOT_AREA times
-    that of the largest plastic one."""
+    the area of the largest plastic spot."""
     force, _ = closing_end(spring)
     spots = spring.joint.spot_distribution()
     largest = float(evaluate_at_pressure(spring.joint, force / spring.joint.A_0)["largest_spot"])

@@ -106,8 +106,8 @@ def test_without_friction_nothing_acts_and_nothing_is_remembered():
 
 
 def test_a_drive_begins_where_it_is():
-    """Far from zero at rest the drive has no friction, in rotation it has that of its speed; no heat in both
-    cases."""
+    """Far from zero at rest the drive has no friction, in rotation it has the friction of its speed; no heat
+    in both cases."""
     law = spring(**DRY)
     for speed, share in ((0.0, 0.0), (2.0, 1.0), (-2.0, -1.0)):
         out, memory = law.advance_motion((500.0, speed, 5.0, speed / 100.0), law.initial_history())
@@ -122,7 +122,7 @@ def test_a_drive_begins_where_it_is():
 
 
 def test_work_of_a_straight_path_is_exact_while_the_limit_changes():
-    """The work of one step equals that of very many small steps by the trapezoidal rule."""
+    """The work of one step equals the work of very many small steps by the trapezoidal rule."""
     brake, rng = FrictionSliders(5.0 * SLIDER_STIFFNESS_SHARES), np.random.default_rng(4)
     memory = brake.pack_history(
         brake.advance(HISTORY_LAYOUT.virgin_history(), 0.0, 0.0, (0.05, 0.08)), 0.0, (0.05, 0.08)
@@ -255,8 +255,8 @@ def test_each_part_follows_its_own_exponential():
 
 
 def test_the_default_coefficient_is_that_of_a_light_machine_oil():
-    """The coefficient is 2/3 of that of the viscosity: the torque of a rolling bearing is proportional to
-    viscosity^(2/3)."""
+    """The coefficient is 2/3 of the coefficient of the viscosity: the torque of a rolling bearing is
+    proportional to viscosity^(2/3)."""
     found = {
         row["oil"]: 2.0 / 3.0 * math.log(float(row["T30_mPas"]) / float(row["T100_mPas"])) / 70.0
         for row in OILS
@@ -294,7 +294,7 @@ def test_random_trajectories_make_heat_only_and_all_work_is_accounted_for(ratio,
     """With all kinds of friction and changing temperature, the work of both torques (trapezoidal rule) is
     stored or becomes heat.
 
-    The beginning of the first trajectory is that of every flavour too.
+    The beginning of the first trajectory is equal in every flavour, too.
     """
     law, rng = spring(**ALL, d=0.3, ratio=ratio), np.random.default_rng(24)
     t = np.linspace(0.0, 2.0, STEPS)

@@ -151,8 +151,8 @@ def test_pressure_on_the_oval_converges():
 
 
 def test_turning_the_oval_does_the_work_of_the_loads():
-    """Virtual work of a rotation of the oval: the moment on the oval is that of the loads on the
-    moving ring."""
+    """Virtual work of a rotation of the oval: the moment on the oval equals the moment of the
+    loads on the moving ring."""
     circle = Circle.of(R, 128)
     radial, tangential = tooth_traction(DRIVE, SIZE_14, 1.0)(circle.theta)
     load = circle.load(radial, tangential)

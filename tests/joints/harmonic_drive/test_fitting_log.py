@@ -144,7 +144,7 @@ def test_a_current_needs_its_constant(drive, capsys, tmp_path):
     path = tmp_path / "current.csv"
     path.write_text("\n".join(row for row in rows if not row.startswith("#")), encoding="utf-8")
     asked = ["fit", "log", str(path), "--params", str(drive)]
-    assert "expected --torque-constant [N.m/A] beside it" in refused_line(capsys, *asked)
+    assert "expected --torque-constant [N.m/A]" in refused_line(capsys, *asked)
     assert cli.main([*asked, "--torque-constant", "0.1005"]) == 0
     assert "friction_coulomb" in capsys.readouterr().out
 
@@ -209,7 +209,7 @@ def test_a_log_that_cannot_be_is_refused(drive, tmp_path, capsys, given, text):
         ([*DRIVE, "--columns", "speed=x"], "expected NAME=HEADING with one of time, q, dq"),
         ([*DRIVE, "--columns", "dq=x"], "has no column 'x' for dq; it has time, q, dq, tau"),
         ([*DRIVE, "--free", "K9"], "'K9' is not a parameter to fit"),
-        ([*DRIVE, "--free", "K1"], "K1 needs the columns q and q_motor beside the time"),
+        ([*DRIVE, "--free", "K1"], "K1 needs the columns q and q_motor in addition to time"),
     ],
 )
 def test_words_that_cannot_be_are_refused(tmp_path, capsys, words, text):

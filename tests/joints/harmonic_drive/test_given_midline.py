@@ -174,8 +174,8 @@ def random_table(rng, n):
 
 
 def test_a_table_of_a_smooth_law_gives_it_back():
-    """T = K x (1 + b x^2): the error of the stiffness is of the order of the spacing, that of the torque of
-    its square."""
+    """T = K x (1 + b x^2): the error of the stiffness is of the order of the spacing, the error of the
+    torque of its square."""
     x = np.linspace(0.0, 2e-3, 41)[1:]
     K, b = 1e4, 2e5
     spring = HarmonicDriveSpring.tabulate(table(K * x * (1.0 + b * x**2), x))

@@ -367,7 +367,7 @@ def energy(spring, start, end, pieces):
 
 
 def test_closed_cycle_returns_its_energy(spring):
-    """Path back and forth through zero on different points; the energy agrees with that of the law."""
+    """Path back and forth through zero on different points; the energy agrees with the energy of the law."""
     turns = [0.0, 4e-3, -2e-3, 1e-3, -4.5e-3, 0.0]  # rad, past the end of the table at 4.36e-3
     parts = [energy(spring, a, b, 400 + 37 * i) for i, (a, b) in enumerate(pairwise(turns))]
     # pieces of 1e-5 rad do not end at the nodes, where the third derivative jumps by interpolation

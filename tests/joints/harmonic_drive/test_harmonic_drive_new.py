@@ -139,7 +139,7 @@ def test_what_is_fixed_decides_the_ratio(capsys, words, ratio):
 
 def test_a_ratio_with_its_sign_leaves_nothing_to_be_fixed(capsys):
     asked = ("new", "harmonic-drive", "--catalogue", "CSG-17-80", "--ratio=-80", "--fixed", "flexspline")
-    assert "--fixed flexspline beside --ratio = -80, whose sign is stated" in refused_line(capsys, *asked)
+    assert "--fixed flexspline with --ratio = -80, whose sign is stated" in refused_line(capsys, *asked)
 
 
 SPRING = MODELS["HarmonicDriveSpring"]
@@ -189,7 +189,7 @@ def test_lost_motion_of_every_drive_is_below_the_published_limit(size):
 
 
 def test_lost_motion_is_midway_in_the_loop_through_rated_torque():
-    """Lost motion is the mean angle of both branches at +4 % of rated torque minus that at -4 %."""
+    """Lost motion is the mean angle of both branches at +4 % of rated torque minus the mean at -4 %."""
     spring = HarmonicDriveSpring.tabulate(made("CSG-17-100", hysteresis="1").values)
     rated = spring.joint.rated_torque
     steps = rated * np.concatenate([np.linspace(1.0, -1.0, 51), np.linspace(-0.96, 1.0, 50)])

@@ -65,7 +65,7 @@ def test_torques_are_those_of_virtual_work(ratio):
 
 
 def test_damping_takes_power_from_both_flanges():
-    """Power d der(phi_rel)^2 of the damper is the power of the flanges beyond that of the spring."""
+    """Power d der(phi_rel)^2 of the damper is the power of the flanges minus the power of the spring."""
     law = default_spring(d=2.0, **ERROR)
     motion = (3.0, 40.0, 0.0305, -0.3)
     still, moving = law.evaluate_motion(3.0, 0.0, 0.0305, 0.0), law.evaluate_motion(*motion)

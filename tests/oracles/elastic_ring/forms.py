@@ -24,7 +24,7 @@ class OnOval(NamedTuple):
     peak: float
     """Pressure [Pa] on the major axis."""
     edge_pressure: float
-    """Pressure [Pa] at the edge, where a line force stands beside it."""
+    """Pressure [Pa] at the edge, where a line force acts next to it."""
     edge_force: float
     """Line force [N/m] at each of the four edges."""
     lobe_force: float
@@ -46,7 +46,7 @@ def on_oval(ring: Ring, radius: float, deformation: float) -> OnOval:
     M'' + M = C - p r^2, r N = C - M. On the oval p = D w/r^4 (9 cos(2 theta) + c) with c = C r^2/(D w);
     off it, with x from the minor axis, u/w = -c + A cos x + B x sin x. Displacement, slope and moment
     go on at the edge and the ring is longer by N/A on average, which leaves one equation for the edge.
-    Neglected: (thickness/radius)^2/12 beside 1.
+    (thickness/radius)^2/12 is neglected against 1.
 
     Raises ValueError if the ring is so thin, or so thick, that it lies on all or hardly any of the oval.
     """

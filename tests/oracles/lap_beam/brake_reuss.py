@@ -33,8 +33,8 @@ def beam():
 def form():
     """Gap [m] of the unloaded lap at positions x, y [m], from models/reference/brake_reuss_lap_form.csv.
 
-    Half the width is modelled, with the mean of both halves. In a hole the gap is that beside it along x;
-    beyond the scan it is that of the last row or column.
+    Half the width is modelled, with the mean of both halves. In a hole the gap is taken from next to it
+    along x; beyond the scan, from the last row or column.
     """
     text = (files("jointfmu_models") / "reference" / "brake_reuss_lap_form.csv").read_text(encoding="utf-8")
     lines = [line for line in text.splitlines() if not line.startswith("#")]

@@ -95,7 +95,7 @@ class Joint:
         )
 
     def _interface(self, state, moved):
-        """Sliders, tractions (P, 3) [Pa] relative to those at tightening, and their derivatives (P, 3, 3)."""
+        """Sliders, tractions (P, 3) [Pa] less tractions at tightening, and their derivatives (P, 3, 3)."""
         before, after = (self.beam.approach + w[:, 2] for w in (state.displacement, moved))
         shift = (moved - state.displacement)[:, :2]
         sliders = self.sliders.advance(state.force, before, after, shift)

@@ -112,7 +112,7 @@ def _read_start_values(path: Path) -> dict[str, str]:
 def _find_changed_values(
     fmu_paths: Sequence[Path], old_start_values: Mapping[Path, Mapping[str, str]]
 ) -> dict[str, dict[str, list[str | None]]]:
-    """Find the start values that differ from those of replaced FMUs: {file: {parameter: [old, new]}}.
+    """Find start values that differ from the start values of replaced FMUs: {file: {parameter: [old, new]}}.
 
     None stands for a parameter that the FMU does not have.
     """

@@ -64,7 +64,7 @@ def _run_parameters(args: argparse.Namespace) -> CommandResult:
 
 
 def _load_joint_file(fmu_or_joint_name: str, args: argparse.Namespace) -> ParameterFile:
-    """Load the parameter file of an FMU or joint: that of `--params`, or the default with `--law`."""
+    """Load the parameter file of an FMU or joint: the file of `--params`, or the default file of `--law`."""
     joint = MODELS[fmu_or_joint_name].joint if fmu_or_joint_name in MODELS else fmu_or_joint_name
     if args.params:
         return load_parameter_file(args.params, joint)

@@ -235,7 +235,7 @@ def add_sweep_command(command_parsers: SubParsers) -> None:
 def _run_sweep(args: argparse.Namespace) -> CommandResult:
     """Do the runs of an FMU for the deprecated command `sweep`; print how many are done and failed.
 
-    They are the runs of `_run_uncertainty`.
+    The runs are those of `_run_uncertainty`.
     """
     from ...studies.uncertainty import journal, study
     from ...studies.uncertainty.runs import evaluate_runs

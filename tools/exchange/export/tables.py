@@ -50,9 +50,8 @@ def tabulate_law(curve: Curve, max_error: float) -> LoadTable:
 
     max_error : largest relative error [1] of the pressure with linear interpolation
 
-    The table ends at the largest pressure of the law. Below the pressure range of the law, a line leads to
-    zero pressure. The
-    error is limited above this line only.
+    The table ends at the largest pressure of the law. Below the pressure range of the law, a straight line
+    leads to zero pressure; the error is limited above this line only.
     """
     x, y, k = _sample_curve(curve)
     in_range = x >= 0.0

@@ -1,6 +1,6 @@
 """Template variables of the packages Interfaces and Wrappers of the Modelica library.
 
-They are the variables and flanges of an FMU, and the diagram of its wrapper.
+The template variables have the variables and flanges of an FMU, and the diagram of its wrapper.
 """
 
 from collections.abc import Mapping, Sequence

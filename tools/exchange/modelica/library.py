@@ -165,7 +165,7 @@ def _default_records(
 ) -> tuple[ModelicaRecord, ...]:
     """Records of a joint with its default parameters.
 
-    They are also part of a library that is written for a user's joint.
+    A library that is written for a user's joint contains these records, too.
     """
     component: ModelicaComponent = module.MODELICA_COMPONENT
     return tuple(component.make_records(load_default(joint), working_points))

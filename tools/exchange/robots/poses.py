@@ -121,7 +121,7 @@ def compute_ringing(
 def find_largest_stable_step(model: "MjModel", axes: Sequence[ElasticAxis], pose: Array) -> float:
     """Largest stable time step [s] of MuJoCo's default integrator, 2 over the highest natural frequency.
 
-    The frequency is that of links and free motors at a pose, with the stiffness at the largest fit torques.
+    It is the frequency of links and free motors at a pose, with the stiffness at the largest fit torques.
     """
     indices = find_dofs(model, axes)
     rotors = np.zeros(model.nv)

@@ -247,7 +247,7 @@ class RobotArm:
         )
 
     def evaluate_residuals(self, parameters: Any, values: Mapping[str, Number]) -> list[Number]:
-        """Forces that the accelerations need, minus those that act, of the free joints and of the rotors."""
+        """Forces that the accelerations need, minus the acting forces, of free joints and of rotors."""
         positions, speeds, forces, given, rotors, payload = self._collect_loads(parameters, values)
         links, free = [joint.link for joint in self.joints], list(map(self.is_free, self.joints))
         names = {joint.link.name: joint.name for joint in self.joints}

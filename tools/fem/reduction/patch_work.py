@@ -110,7 +110,7 @@ class FrictionWork:
 def _force_scale(forces: Array) -> Array:
     """Divisors (s, 3 + k) of errors of generalised forces.
 
-    There is one divisor for x and y, one for the moment, and one for the modes.
+    Each state has one divisor for x and y, one for the moment, and one for the modes.
     """
     force, moment, modes = (np.linalg.norm(f, axis=1) for f in (forces[:, :2], forces[:, 2:3], forces[:, 3:]))
     lever_arm = np.max(moment) / np.max(force)
@@ -308,7 +308,7 @@ class PatchFit:
         )
 
     def _work_errors(self, patch_displacement: Array) -> tuple[Array, tuple[Array, MonotonicFriction]]:
-        """Relative errors [1] of the friction of the reduced patches against that at all quadrature points.
+        """Relative errors [1] of the patches' friction against the friction at all quadrature points.
 
         The errors are those of generalised friction forces, of these forces if nothing slips (stick forces),
         and of the losses per cycle, in all states in shear.

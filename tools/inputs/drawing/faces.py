@@ -1,6 +1,6 @@
 """The two faces of a contact on a drawing: material, and roughness from finish, Ra, Rq, Rz or a scan.
 
-Also the Hertzian line contact of curved faces.
+This module also computes the Hertzian line contact of curved faces.
 """
 
 from pathlib import Path
@@ -144,7 +144,7 @@ def find_law(options: DrawingOptions) -> str:
     """
     stated = options.get("law")
     if options["interface_table"] and stated:
-        raise ValueError(f"--law {stated} beside --interface-table; state one of them")
+        raise ValueError(f"--law {stated} with --interface-table; state one of them")
     return TABLE_LAW if options["interface_table"] else stated or ROUGHNESS_LAW
 
 

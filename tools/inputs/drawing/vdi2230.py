@@ -1,7 +1,7 @@
 """Compliance of bolt and clamped parts, deformation cone, preload, torque, embedding: VDI 2230, part 1.
 
-Valid for concentrically clamped joints with one bolt. Lengths in m, moduli and stresses in Pa, compliances
-in m/N.
+The equations are valid for concentrically clamped joints with one bolt. Lengths are in m, moduli and stresses
+in Pa, compliances in m/N.
 """
 
 import re

@@ -148,7 +148,7 @@ def _is_number(word: str) -> bool:
 def _parse_numbers(line: str) -> list[float] | None:
     """Numbers of a listing line that has only numbers, else None.
 
-    They may have no blank between: 12-0.5E-003.
+    A minus sign may follow the number before without a blank: 12-0.5E-003.
     """
     if NUMBER_PATTERN.sub("", line).strip():
         return None

@@ -116,7 +116,7 @@ IGNORED_CELLS = ("vertex", "line", "line3")
 def boundary_faces(cells: Mapping[str, NodeIndices]) -> list[NodeIndices]:
     """Faces on the boundary of a mesh: faces of one volume cell only.
 
-    Without volume cells: the surface cells.
+    A mesh without volume cells gives its surface cells.
     """
     volumes = {name: block for name, block in cells.items() if name in VOLUME_CELLS}
     if not volumes:

@@ -237,7 +237,7 @@ def _deviation_above_tested_moments(
 ) -> float:
     """Largest deviation [1] of the sums of reduced points at moments above the tested ones.
 
-    The moments go up to the one at which a row of bolts loses its force.
+    The moments go up to the moment at which a row of bolts loses its force.
 
     moment_ratio_limit : smallest of these moments over the largest one [1]
     """

@@ -43,8 +43,8 @@ class LoadCase(NamedTuple):
 def max_moment_ratio(joint: BoltedInterface, normalised_pressure: PressureDistribution) -> float:
     """Largest moment at which the sums must be kept, over the moment that unloads a row of bolts [1].
 
-    It is at most 1. It is smaller if nodes that carry the share MAX_OPENED_PRELOAD_SHARE of the preload open
-    earlier.
+    The result is at most 1. It is smaller if nodes that carry the share MAX_OPENED_PRELOAD_SHARE of the
+    preload open at a smaller moment.
     """
     force = normalised_pressure.area_share * normalised_pressure.preload_pressure_ratio
     loaded = force > 0.0
@@ -317,7 +317,7 @@ class SumFunctions:
         return out
 
     def sum_deviations(self, reduced_points: PressureDistribution, load_case_sums: LoadCaseSums) -> Array:
-        """Largest deviation (m) [1] in each load case: sums of reduced points minus those of all nodes."""
+        """Largest deviation (m) [1] in each load case: sums of reduced points minus sums of all nodes."""
         approach = (
             self._approach_at_pressure(self._preload_pressure(reduced_points, load_case_sums.load_cases))
             - load_case_sums.opening[:, None]

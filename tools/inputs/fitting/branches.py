@@ -81,7 +81,7 @@ class Loops:
 
     @property
     def noise_groups(self) -> NDArray[np.int64]:
-        """Group (n) of each sample: index of its run. All samples of a group have the same noise level."""
+        """Noise group (n) of each sample, whose samples have equal noise: the index of the run."""
         return self.run_index
 
     @property
@@ -265,8 +265,9 @@ class Loops:
     def residuals(self, law: HysteresisLaw, residual_scale: Array) -> Array:
         """Residuals of measured loops against a hysteresis law, over their standard deviations [1].
 
-        These are the force errors (n), then the shifts of the turning points (branches), then the force steps
-        between slipping branches (`slip_steps`): the offsets of the branches would hide them.
+        The residuals are the force errors (n), the shifts of the turning points (branches), and the force
+        steps between slipping branches (`slip_steps`), which the free offset of each branch would hide
+        otherwise.
         """
         law = law.with_rest_position(self.rest_position(law, residual_scale))
         _, start, residual = self.fit_turning_points(law, residual_scale)

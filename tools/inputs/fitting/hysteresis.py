@@ -40,7 +40,7 @@ _MAX_SECANT_STEPS, _MAX_LOG_DECREMENT = 12, 3.0
 
 @dataclass(frozen=True, slots=True)
 class NonlinearSpring:
-    """Nonlinear elastic spring beside the friction: force E(u), odd in the motion u, and energy V(u)."""
+    """Nonlinear elastic spring parallel to the friction: force E(u), odd in the motion u, and energy V(u)."""
 
     force: ForceFunction
     energy: ForceFunction
@@ -201,7 +201,7 @@ _TABLE_POINTS, _MAX_BISECTIONS = 80, 50
 class Oscillator:
     """Mass on a joint, an oscillator of one degree of freedom, whose vibration is compared with a test.
 
-    It consists of the hysteresis law, the mass or inertia, and the structural damping ratio [1].
+    The fields are the hysteresis law, the mass or inertia, and the structural damping ratio [1].
     """
 
     hysteresis_law: HysteresisLaw
@@ -250,7 +250,7 @@ class FreeVibration:
 
     @property
     def noise_groups(self) -> NDArray[np.int64]:
-        """Group (2 n) of residuals with the same noise level: 0 for frequencies, 1 for damping ratios."""
+        """Noise group (2 n) of each residual, equal noise in a group: 0 frequencies, 1 damping ratios."""
         return np.repeat([0, 1], self.decay_points.amplitude.size)
 
     @property
@@ -284,7 +284,7 @@ class ForcedResponse:
 
     @property
     def noise_groups(self) -> NDArray[np.int64]:
-        """Group (n) of residuals with the same noise level: all amplitudes are in group 0."""
+        """Noise group (n) of each residual: 0, as all amplitudes have the same relative noise."""
         return np.zeros(self.amplitude.size, dtype=np.int64)
 
     @property

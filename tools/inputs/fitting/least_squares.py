@@ -346,7 +346,7 @@ class UnknownExchange:
         return {**rest, self.exchanged_name: float(np.exp(high))}
 
     def express_in_original_unknowns(self, solution: Solution, unknowns: Mapping[str, Unknown]) -> Solution:
-        """Transform a solution with the derived quantity into a solution with the original unknowns."""
+        """Transform a solution for the derived quantity into a solution for the unknown that it replaced."""
         restored = self.restore_unknowns(solution.values, unknowns[self.exchanged_name].start_value)
         values = {name: restored[name] for name in unknowns}
         transformation = np.eye(len(values))

@@ -133,8 +133,8 @@ class BearingCurve:
     def decay_length(self) -> Array:
         """Decay length l [m] at each section: p ~ exp(approach/l).
 
-        It is the mean excess. At heavy load the hills interact: where the mean excess of Gaussian heights
-        would be above GAUSSIAN_DECAY_LIMIT h, the mean excess is lowered by the same factor.
+        The decay length is the mean excess. At heavy load the hills interact: where the mean excess of
+        Gaussian heights would be above GAUSSIAN_DECAY_LIMIT h, the mean excess is lowered by the same factor.
         """
         limit = GAUSSIAN_DECAY_LIMIT / gaussian_mean_excess(self.share)
         return np.asarray(self.mean_excess * np.minimum(limit, 1.0))
@@ -170,7 +170,7 @@ class BearingCurve:
         return float(low), float(high)
 
     def stiffness_table(self, modulus: float, points: int = 16) -> tuple[Array, Array]:
-        """Pressures [Pa] and stiffness [Pa/m] of the law `table`, which must not fall.
+        """Pressures [Pa] and stiffness [Pa/m] of the law `table`, whose stiffness is not allowed to decrease.
 
         The pressures go up to MAX_SECTION_AREA_SHARE.
         """

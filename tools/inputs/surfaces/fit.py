@@ -233,7 +233,7 @@ def _excess_deviation(
 def _estimate_drift(log_scale: Array, residual: Array, statistical_covariance: Array) -> tuple[float, float]:
     """Change of D over the range of scales, and its standard error.
 
-    They come from an additional quadratic term in ln(scale).
+    Both come from an additional quadratic term in ln(scale).
     """
     whiten = _whitening_matrix(statistical_covariance + MIN_LAW_DEVIATION**2 * _correlation_matrix(log_scale))
     t = log_scale - log_scale.mean()

@@ -172,8 +172,7 @@ def last_digit_unit(positions: Array) -> Array:
 def _common_power_of_ten(numbers: Array) -> float:
     """Largest power of ten, at most 1, of which all numbers are multiples.
 
-    It is the unit of their last digit.
-
+    This power of ten is the unit of their last digit.
     0 if the largest number is more than MAX_POSITION_OVER_LAST_DIGIT times that power.
     """
     largest = float(np.abs(numbers).max())

@@ -69,9 +69,9 @@ def with_surface(
 ) -> ParameterFile:
     """Set the parameters of a parameter file that follow from a measured surface, with their sources.
 
-    These are the rms heights of the measured sides. With the law `roughness` also slope, longest wave and, if
-    it is determined, the Hurst exponent. With fractal laws also D and G, if they are determined. With the law
-    `table` none: `stiffness_table.with_points` sets its points.
+    The function sets the rms heights of the measured sides. For the law `roughness` it also sets slope,
+    longest wave and, if it is determined, the Hurst exponent; for fractal laws D and G, if they are
+    determined. For the law `table` it sets no parameter: `stiffness_table.with_points` sets the points.
 
     set_undetermined : set D and G or the Hurst exponent even if they are not determined; ValueError if one is
         not finite

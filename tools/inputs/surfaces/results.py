@@ -178,8 +178,8 @@ class Identification:
     def undetermined_reason(self, direction: str | None = None) -> str | None:
         """Reason why D and G in a direction are not determined; None if they are.
 
-        They are determined if the surface is self-affine by all methods with D inside of its interval, if the
-        confidence intervals of D overlap, and if G is determined.
+        D and G are determined if the surface is self-affine by all methods with D inside of its interval, if
+        the confidence intervals of D overlap, and if G is determined.
         """
         results = self.select_results_in_direction(direction)
         for result in results:
@@ -199,9 +199,10 @@ class Identification:
 
 
 def mean_line_shares(heights: ArealMap) -> tuple[float, float]:
-    """Mean square of the average line of a map over that of its single lines [1], along x and along y.
+    """Mean square of a map's average line over the mean square of its single lines [1], along x and along y.
 
-    The squares are those of second differences. Near 0: isotropic surface. 1: all lines are equal.
+    The squares are taken of second differences. The result is near 0 for an isotropic surface, and 1 if all
+    lines are equal.
     """
     shares = []
     for z in (heights.z, heights.z.T):

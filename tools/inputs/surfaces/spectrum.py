@@ -282,7 +282,7 @@ def _hann_window(n: int) -> Array:
 def _line_modes(z: Array, spacing: float) -> tuple[Array, Array, Array]:
     """Fourier modes of lines of heights: frequency f > 0 [1/m], variance [m2] and df/f [1].
 
-    They are averaged over the lines.
+    Variances are averaged over the lines.
     """
     n = z.shape[1]
     window = _hann_window(n)

@@ -26,7 +26,7 @@ class InterfacePoints:
 
     pressure, stiffness : (n) [Pa], [Pa/m]
     ratio               : K_T/K_N of elastic contact spots [1]
-    factor_range        : smallest and largest stiffness over that of the points [1]
+    factor_range        : smallest and largest stiffness over the stiffness of the points [1]
     source              : text on the origin
     yielded             : (n) share of the contact at the hardness [1]; empty: not computed
     """
@@ -73,7 +73,7 @@ def points_from_tail(curve: BearingCurve, materials: MaterialPair, files: str) -
     pressure, stiffness = curve.stiffness_table(materials.modulus)
     source = (
         f"upper tail of the heights of {files}: pressure over decay length, E* = {materials.modulus:.4g} Pa "
-        f"of {materials.names}; range: single surfaces beside boundary elements (docs/validity_stiffness.md)"
+        f"of {materials.names}; range: from boundary elements of single surfaces (docs/validity_stiffness.md)"
     )
     return InterfacePoints(pressure, stiffness, materials.ratio, TABLE_FACTOR_RANGE, source)
 
@@ -84,7 +84,7 @@ def points_from_solution(
     """Points of the interface law `table` from a solution by boundary elements.
 
     scans      : heights without form, of one side or of both
-    both_sides : whether the single scan describes both sides; the gap is then that of the scan and its copy,
+    both_sides : whether the single scan describes both sides; the gap is then between the scan and its copy,
                  mirrored in y
     """
     from .solve import gap_of_scans, solve_stiffness

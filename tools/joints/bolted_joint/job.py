@@ -132,7 +132,7 @@ def _bolt_marks(joint: Any) -> tuple[Sequence[Sequence[float]], str]:
 
 
 def _measured_curves() -> list[MeasuredCurve]:
-    """Measured normal stiffness per area k [N/m3]: from approach = C p^m follows k = p^(1 - m)/(C m)."""
+    """Measured normal stiffness per area k = p^(1 - m)/(C m) [N/m3], from the approach C p^m."""
     text = (files("jointfmu_models") / "reference" / "measured_joints.toml").read_text(encoding="utf-8")
     curves = []
     for row in tomllib.loads(text)["normal"]:

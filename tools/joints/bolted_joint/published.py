@@ -47,7 +47,7 @@ def critical_area(joint: BoltedJointParameters, choice: str) -> float:
 
 
 def spot_stiffness_ratio(joint: BoltedJointParameters) -> float:
-    """Stiffness of a contact spot by the choice `family` over that by the choice `hertz` [1]."""
+    """Stiffness of a contact spot by the choice `family` over its stiffness by the choice `hertz` [1]."""
     family, hertz = (
         zhao.normal_stiffness(replace(joint, spot_stiffness=kind), 1e-6) for kind in ("family", "hertz")
     )

@@ -33,9 +33,8 @@ MAX_ITERATIONS, RELATIVE_TOLERANCE = 12, 1e-5
 def approach(sample: JointSample, preload: Array) -> Array:
     """Approach (m) [m] of the interface at preloads (m) [N].
 
-    It is the integral of dF/K_zz over the force F of all bolts.
-
-    Below the first point the integrand F/K is a power of F.
+    The approach is the integral of dF/K_zz over the force F of all bolts. Below the first preload, F/K_zz is
+    taken as a power of F.
     """
     end = preload[-1]
     x = np.linspace(-LOG_FORCE_RANGE, 0.0, LOG_FORCE_POINT_COUNT)
@@ -60,7 +59,7 @@ def loss_factor(sample: JointSample, preload: Array) -> Array:
     The amplitude of the shear force is LOOP_SHEAR_OVER_BOLT_FORCE of the force of all bolts.
 
     The FMU gives the loss factor of a loop with the present displacement as its amplitude. Newton's method
-    finds the displacement of the shear force, from that of a virgin curve with the same initial stiffness and
+    finds the displacement at the shear force. It starts on a virgin curve with the same initial stiffness and
     friction limit, for a pressure p ~ approach^START_EXPONENT.
     """
     loads, parameters = preload[-1] * LOOP_LOADS_OVER_RAMP_END, sample.parameters

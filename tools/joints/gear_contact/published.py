@@ -73,7 +73,7 @@ def _state_at_real_area(law: Yu2022, area_fraction: float) -> dict[str, float]:
 
 
 def _is_below_majumdar_bhushan(contact: GearContactParameters) -> bool:
-    """Whether the load is below that of Majumdar and Bhushan (1991) at all real areas from 1 to 10 % of A_0.
+    """Whether the load is below the load of Majumdar and Bhushan (1991) at real areas from 1 to 10 % of A_0.
 
     Both models have the same D (fractal dimension of the profile) and G. In the model of Majumdar and Bhushan
     spots are elastic above the area a_c = G^2 (2 E/H)^(2/(D-1)) and plastic below.

@@ -209,7 +209,7 @@ class InvoluteGearPair:
         """Damping [N.s/m] along the line of action: 2 DAMPING_RATIO sqrt(stiffness mass).
 
         mesh_stiffness : [N/m] of the mesh
-        densities      : [kg/m3] of both wheels; mass is that of both wheels in series, as solid discs,
+        densities      : [kg/m3] of both wheels; the mass is of both wheels in series, as solid discs,
                          reduced to the line of action
         """
         masses = [
@@ -271,7 +271,7 @@ class InvoluteGearPair:
         return warnings
 
     def check_centre_distance(self, distance: float) -> None:
-        """Raise ValueError, one line, if a stated centre distance [m] is not that of the profile shifts."""
+        """Raise ValueError, one line, if a stated centre distance [m] contradicts the profile shifts."""
         if abs(distance - self.centre_distance) <= MAX_DISTANCE_ERROR * self.normal_module:
             return
         x1, x2 = self.profile_shifts

@@ -108,7 +108,7 @@ def _stem(drive: CatalogueEntry) -> str:
 
 @cache
 def list_drives() -> tuple[CatalogueEntry, ...]:
-    """All drives of the catalogue: those with a row of stiffness of their own, and those that share a row."""
+    """All drives of the catalogue, with a stiffness row of their own or one that several drives share."""
     torques = {(row["series"], row["size"], row["ratio"]): row for row in _read_table("torque")}
     drives_by_name = {
         item.name: item for row in _read_table("stiffness") for item in _drives_of_row(row, torques)
@@ -188,7 +188,7 @@ def _rated_and_peak_torque(
 ) -> dict[str, SourcedNumber]:
     """Rated and repeated peak torque of a drive: {column: number with source}.
 
-    Published, else estimated from another series; empty if no series has them.
+    The torques are published, or else estimated from another series; empty if no series has them.
     """
     if series.startswith(ACTUATOR_SERIES):
         return {}
@@ -216,7 +216,7 @@ def _rated_and_peak_torque(
 def _hysteresis_limits(series: str, size: str, ratio: float) -> dict[str, SourcedNumber]:
     """Upper limits of hysteresis and lost motion of a drive: {column: number with source}.
 
-    From actuators of the same size, else the largest of all actuators.
+    The limits are those of actuators of the same size, or else the largest of all actuators.
     """
     step = "30" if ratio < 50.0 else "50" if ratio == 50.0 else "50+"
     rows = [row for row in _read_table("accuracy") if row["ratio"] == step]

@@ -6,7 +6,7 @@ No-load torques at the wave generator, for size D and ratio R:
 
 a, p and b are fitted to the published torques by least squares over logarithms. Dry friction is proportional
 to 1/R, like the radial deformation of the flexspline. This exponent is not fitted: only one drive with
-published friction has a ratio below 100. The exponent 3 is the one of the friction moment of a rolling
+published friction has a ratio below 100. The exponent 3 is the exponent of the friction moment of a rolling
 bearing over its diameter (Palmgren). The difference of running and starting torque is viscous friction of the
 grease, equal for all ratios. Both load-dependent losses are mean values of the published drives.
 

@@ -141,7 +141,7 @@ def _signed_ratio(options: DrawingOptions, ratio: SourcedNumber) -> tuple[Source
     if ratio.value < 0.0:
         if options["fixed"]:
             raise ValueError(
-                f"--fixed {options['fixed']} beside --ratio = {ratio.value:g}, whose sign is "
+                f"--fixed {options['fixed']} with --ratio = {ratio.value:g}, whose sign is "
                 "stated; expected "
                 "the ratio as catalogues print it, above 0"
             )
@@ -159,7 +159,7 @@ def _signed_ratio(options: DrawingOptions, ratio: SourcedNumber) -> tuple[Source
 def read_friction_parameters(
     options: DrawingOptions, sourced_numbers: Mapping[str, SourcedNumber]
 ) -> dict[str, SourcedNumber]:
-    """Friction parameters of the drive, from stated numbers and those of the catalogue.
+    """Friction parameters of the drive, from stated numbers and numbers of the catalogue.
 
     Empty for a fixed wave generator. Raises ValueError for stated numbers that contradict each other.
     """

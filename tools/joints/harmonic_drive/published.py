@@ -55,8 +55,8 @@ def drive_peak_pressure(drive: HarmonicDriveParameters, torque: float) -> float:
 def kogut_etsion_constant(drive: HarmonicDriveParameters, product: str, stage: int) -> float:
     """Constant [1] of an elastic-plastic stage of Kogut and Etsion, written as a function of the spot area.
 
-    product : "load" or "stiffness": factor of the power law; "area": area at the end of the stage over that
-              at its onset of yield
+    product : "load" or "stiffness": factor of the power law; "area": area at the end of the stage over area
+              at the onset of yield
     stage   : 1 or 2
     """
     if product == "area":

@@ -73,7 +73,7 @@ def friction_figures(load_history: LoadHistory) -> list[Figure]:
 
 
 def _speed_figure(parameter_file: ParameterFile) -> Figure:
-    """Figure of the no-load friction over motor speed, at several temperatures and at that of the file."""
+    """Figure of the no-load friction over motor speed, at several temperatures and the file's temperature."""
     drive, rpm = parameter_file.values, np.linspace(0.0, max(MOTOR_SPEEDS), _CURVE_POINTS)
     w1 = rpm * math.pi / 30.0
     series = [
@@ -136,7 +136,7 @@ def _find_catalogue_entry(parameter_file: ParameterFile) -> CatalogueEntry | Non
 def _comparison_rows(
     model: Model, parameter_file: ParameterFile, entry: CatalogueEntry
 ) -> Iterator[ComparisonRow]:
-    """Rows that compare the numbers of a catalogue entry with those of the drive."""
+    """Rows that compare the numbers of a catalogue entry with the computed numbers of the drive."""
     printed, spring = entry.numbers, HarmonicDriveSpring.tabulate(parameter_file.values)
     yield from _wind_up_rows(
         spring,

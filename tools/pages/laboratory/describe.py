@@ -64,7 +64,7 @@ class PageModule:
     def collect_sources(self) -> dict[str, str]:
         """Collect all C sources of the module: {file name: text}.
 
-        They are those of the FMU and of the functions that the page calls.
+        The sources are those of the FMU and of the functions that the page calls.
         """
         # imported here because it needs casadi, which pages of the report do not need
         from jointfmu_fmu_src.native.code.generate import generate_sources, read_instantiation_token
@@ -77,8 +77,8 @@ class PageModule:
     def compile_module(self) -> bytes:
         """Compile the module to WebAssembly (a WASI reactor without imports), or read it from the cache.
 
-        It exports the functions of laboratory.c. Raises ImportError if ziglang is missing, RuntimeError with
-        the first error of the compiler.
+        The module exports the functions of laboratory.c. Raises ImportError if ziglang is missing,
+        RuntimeError with the first error of the compiler.
         """
         return get_cached_result(
             f"{format_parameter_file(self.parameter_files[0])} {self._page_sources()}",

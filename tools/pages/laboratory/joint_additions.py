@@ -90,7 +90,7 @@ class ExampleValues(NamedTuple):
 class LaboratoryModel:
     """Additions of a joint to the laboratory page of one of its models.
 
-    panels           : curves in addition to those of the FMU's documentation
+    panels           : curves in addition to the curves of the FMU's documentation
     slider_spans     : {variable: (lower, upper end of its slider [SI])}, in place of the computed ends
     path_inputs      : inputs that the user varies with the pointer; empty: the input of the ramp
     published_points : {quantity of a reference file: its output and arguments in the FMU}

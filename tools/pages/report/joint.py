@@ -338,7 +338,7 @@ def _comparison_rows(rows: list[ComparisonRow]) -> list[dict[str, str]]:
 def _describe_range(load_history: LoadHistory) -> str:
     """Describe the range of loads of a joint in a sentence.
 
-    It ends at the end of the law, or at the load capacity of the parts if that is less.
+    The range ends at the end of the law, or at the load capacity of the parts if that is less.
     """
     ramped = next(v for v in load_history.model.inputs if v.name == load_history.model.ramp.input_name)
     nominal = find_nominal_pressure_model(KINDS[load_history.file.joint])

@@ -49,7 +49,7 @@ class LoadHistory:
 
     @property
     def loop_inputs(self) -> dict[str, float]:
-        """{input: value} in the load cycles: its start value, or the one in `Model.load_cycle` if it is 0."""
+        """{input: value} in the load cycles: its start value; if it is 0, the value in `Model.load_cycle`."""
         assert self.model.load_cycle
         settings = self.model.load_cycle.variable_values
         return {name: value or float(settings.get(name, 0.0)) for name, value in self.start_values.items()}

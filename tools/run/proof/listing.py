@@ -1,6 +1,6 @@
 """Files by which a tool enters the list of FMI tools: an FMU with inputs and reference results.
 
-They follow the FMI cross-check rules, version 4.1.
+The files follow the FMI cross-check rules, version 4.1.
 
 The folder fmus/VERSION/cs/PLATFORM/TOOL/RELEASE/MODEL contains MODEL.fmu, MODEL_in.csv, MODEL_ref.csv,
 MODEL_ref.opt and README.md. The files describe one experiment that needs no parameter set: the first
@@ -157,7 +157,7 @@ Run in {proof.importer} by `jointfmu prove {name}.fmu`: of {len(outcome.worst_po
 
 
 def _list_platforms(fmu: Path, fmi_version: str) -> list[str]:
-    """Platforms for which an FMU contains a binary; for FMI 2.0 only those of FMI2_PLATFORMS."""
+    """Platforms for which an FMU contains a binary; for FMI 2.0 only platforms of FMI2_PLATFORMS."""
     with archives.open_archive(fmu) as archive:
         names = archive.namelist()
         platforms = {match[1] for name in names if (match := re.match(r"binaries/([^/]+)/.", name))}

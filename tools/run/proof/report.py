@@ -71,7 +71,7 @@ def format_counts(proof: Proof) -> str:
 def format_summary(proof: Proof) -> str:
     """Summary of a proof in one line: experiments that passed, missed, and were not executed.
 
-    It also counts start values that differ.
+    The summary also counts start values that differ.
     """
     excluded = sum(bool(outcome.exclusion_reason) for outcome in proof.outcomes)
     missed = sum(not outcome.has_passed for outcome in proof.outcomes)
@@ -88,7 +88,7 @@ def proof_to_json(proof: Proof) -> dict[str, object]:
     """Result of a proof as one JSON object.
 
     A proof repeats the experiments that an FMU contains, and compares each output with its reference. The
-    object has the worst point of each output: that with the largest error over tolerance.
+    object has the worst point of each output: the point with the largest error over tolerance.
     """
     return {
         "fmu": str(proof.fmu),

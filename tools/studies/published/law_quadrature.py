@@ -283,7 +283,7 @@ def _yu2022(p: Parameters, largest: float) -> dict[str, float]:
     a_nec, a_nepc, a_npc = stage_end_area(1.0), stage_end_area(limits[0]), stage_end_area(limits[1])
 
     def deformation(a: float) -> tuple[float, float, float]:
-        """Deformation over that at first yield [1]; factor and exponent of the load in the spot's stage."""
+        """Deformation over yield deformation [1]; factor and exponent of the load in the spot's stage."""
         m, n, c, d = _FIRST_STAGE if a > a_nepc else _SECOND_STAGE
         return (area_ratio(a), c, d) if geometric else ((area_ratio(a) / m) ** (1.0 / n), c, d)
 

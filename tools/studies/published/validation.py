@@ -241,8 +241,8 @@ def format_claim(validated_point: ValidatedPoint) -> str:
 def format_summary(validated_points: Sequence[ValidatedPoint]) -> str:
     """Summary of the comparison in one line.
 
-    It counts the points of each role, the points to which the law is nearer than a trivial guess, and the
-    missed points.
+    The line counts the points of each role, the points to which the law is nearer than a trivial guess, and
+    the missed points.
     """
     found = count_points(validated_points)
     roles = ", ".join(

@@ -164,7 +164,7 @@ class SobolIndices:
 class Sensitivity:
     """Sobol' indices along the load ramp.
 
-    loads             : (m)
+    loads             : (m) [SI] loads of the ramp
     parameter_names   : names of the uncertain parameters (d)
     outputs           : {output: indices (m, d)}
     base_sample_count : number of base samples

@@ -153,7 +153,7 @@ _DISTRIBUTION_PARSERS = {
 def _parse_centre_and_spread(texts: list[str], file_value: float | None) -> tuple[float, str]:
     """Centre and spread of a distribution, from one or two argument texts.
 
-    One percentage is about the file's value; the spread is returned as text.
+    A single text is a percentage; the centre is then the file's value. The spread is returned as text.
     """
     if len(texts) == 1 and _is_percent(texts[0]):
         return _require_file_value(file_value), texts[0]
@@ -240,7 +240,7 @@ def read_study(path: str | Path) -> dict[str, object]:
 
 
 def merge_settings(path: Path | None, stated_settings: Sequence[tuple[str, object]]) -> dict[str, object]:
-    """Settings {name: value} of a study file, if there is one; stated settings replace those of the file."""
+    """Settings {name: value} of a study file, if there is one, replaced by the stated settings."""
     return (read_study(path) if path else {}) | dict(stated_settings)
 
 

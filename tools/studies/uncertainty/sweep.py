@@ -88,7 +88,7 @@ def _load_contained_parameter_file(fmu: Path) -> ParameterFile:
 def format_runs_csv(folder: Path, units: Mapping[str, str]) -> str:
     """CSV text of a study: quantiles of each output at each point of the ramp.
 
-    They are over all runs that did not fail.
+    The quantiles are taken over all runs that did not fail.
     """
     runs: dict[str, list[Array]] = {}
     for entry in journal.read_entries(folder):

@@ -174,7 +174,7 @@ class JointRamp:
     def runs_per_process(self) -> int:
         """Number of runs for which one more process is started.
 
-        It is unlimited (no other process) for a joint registered only in this process.
+        For a joint that is registered only in this process, the number is unlimited: no process is started.
         """
         if not KINDS[self.file.joint].package.startswith("jointfmu."):
             return sys.maxsize
@@ -192,11 +192,11 @@ class JointRamp:
         return load_curves(KINDS[self.file.joint])
 
     def include_files(self) -> "JointRamp":
-        """Return this evaluator unchanged: it needs no files (that of an FMU packs the FMU)."""
+        """Return this evaluator unchanged: it needs no files (the evaluator of an FMU packs the FMU)."""
         return self
 
     def install_files(self, folder: Path) -> "JointRamp":
-        """Return this evaluator unchanged: it needs no files (that of an FMU unpacks the FMU)."""
+        """Return this evaluator unchanged: it needs no files (the evaluator of an FMU unpacks the FMU)."""
         return self
 
     def run(self, index: int, settings: Settings) -> Entry:

@@ -47,7 +47,7 @@ def whiten_jacobian(jacobian: Array, residuals: Sequence[Array]) -> tuple[Array,
     jacobian  : derivatives (n, k) [1] of all residuals, column after column
     residuals : residuals of each measured column [1], at the solution
 
-    Returns also the quantile of Student's t for CONFIDENCE_LEVEL. Its degrees of freedom are those of the
+    Returns also the quantile of Student's t for CONFIDENCE_LEVEL. It has the degrees of freedom of the
     estimated variance of correlated residuals: n (mean spectrum)^2 / (mean squared spectrum).
     """
     u, s, rows = np.linalg.svd(jacobian, full_matrices=False)

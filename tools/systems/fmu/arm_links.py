@@ -123,7 +123,7 @@ class ArmLinks:
         return outputs | {f"tip.{x}": value for x, value in zip("xyz", position, strict=True)}
 
     def evaluate_residuals(self, parameters: Any, values: Mapping[str, Number]) -> list[Number]:
-        """Torques [N.m] that the accelerations need, minus those of the drives."""
+        """Torques [N.m] that the accelerations need, minus torques of the drives."""
         free = [None] * len(self.links)
         needed = self._compute_motion(parameters, values, free, self._list_values(values, "a")).forces
         return [due - torque for due, torque in zip(needed, self._list_values(values, "tau"), strict=True)]

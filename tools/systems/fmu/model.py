@@ -151,7 +151,7 @@ class SystemModel:
         )
 
     def make_parameters(self, model: Model) -> ParameterFile:
-        """Make the parameter file of the system from those of all components."""
+        """Make the parameter file of the system from the parameter files of all components."""
 
         def collect(attribute: str) -> dict[str, Any]:
             """{name in the system: entry} of a mapping of all parameter files, as values or sources."""

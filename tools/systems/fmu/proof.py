@@ -81,7 +81,7 @@ not compared: a stiffness jumps where the motion reverses and friction sticks ag
 def make_proof_files(model: Model, stop: float, interval: float, fmu: Path) -> dict[str, bytes]:
     """Make the files with experiments and reference results of a system's FMU, {path: content}.
 
-    Only a text if no experiment can be run.
+    If no experiment can be run, the result is one text that says so.
 
     stop, interval : stop time and interval of the system's experiment [s]
     fmu            : path of the FMU, with all files that are needed to run it
@@ -170,7 +170,7 @@ def _find_scales(model: Model, results: TimeSeries) -> dict[str, float]:
 def _find_first_difference(model: Model, fine_results: TimeSeries, coarse_results: TimeSeries) -> int:
     """Index of the first row at which two results of the system differ by more than OUTPUT_TOLERANCE.
 
-    It is the number of rows if there is no difference. Rows near jumps are not compared.
+    The result is the number of rows if there is no difference. Rows near jumps are not compared.
     """
     scales, rows = _find_scales(model, fine_results), fine_results.time.size
     differs = [

@@ -50,7 +50,7 @@ def loss_factor(traction_ratio: Number) -> Number:
 def equivalent_damping(loss_factor: Number, mass: Number, stiffness: Number) -> Number:
     """Equivalent viscous damping C = eta sqrt(m K) [N.s/m] (Zhao 2018, Eqs. 20, 29).
 
-    It dissipates as much as the loss factor eta [1] if a mass m [kg] vibrates at resonance on the stiffness
+    C dissipates as much as the loss factor eta [1] if a mass m [kg] vibrates at resonance on the stiffness
     K [N/m].
     """
     return loss_factor * np.sqrt(mass * stiffness)

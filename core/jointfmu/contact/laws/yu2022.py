@@ -214,7 +214,7 @@ def yield_onset_parameter(law: Yu2022) -> Number:
 def critical_log_area(law: Yu2022, yield_onset_ratio: float) -> Number:
     """Log-area ln a [ln m2] of the spot with a given value of a (1/R_x + 1/R_y)^2, Eqs. 28, 31, 32.
 
-    yield_onset_ratio : this value over that at the onset of yield [1], see `yield_onset_parameter`
+    yield_onset_ratio : this value over its value at the onset of yield [1], see `yield_onset_parameter`
 
     Newton's method in ln a. The function is convex and decreases with a slope between 1 - max(D) and
     1 - min(D), so twelve steps reach round-off.
@@ -233,7 +233,7 @@ def critical_log_area(law: Yu2022, yield_onset_ratio: float) -> Number:
 def _elastic_plastic_stages(law: Yu2022) -> tuple[tuple[PlasticStage, PlasticStage], tuple[float, float]]:
     """Two elastic-plastic stages, and the limits of plastic and second stage as areas over a_nec(R_m) [1].
 
-    They depend on the choice `plastic_area`, the relation between area a and deformation w of a spot:
+    Stages and limits depend on `plastic_area`, the choice of the relation between area a and deformation w:
 
     geometric    : elastic relation a = f1 pi R_m w, so w/w_nec = a/a_nec(R_m), which is (a/a_nec)^-(D - 1)
                    for D1 = D2; limits 6 and 110 of Eqs. 31-32

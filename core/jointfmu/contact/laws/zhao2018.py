@@ -127,7 +127,7 @@ class Zhao2018(HardnessLimitedLaw, CheckedParameters):
 def critical_area(law: Zhao2018) -> Number:
     """Critical area a'_c [m2]: smaller spots are plastic, larger ones elastic, Eq. 4.
 
-    It depends on the choice `critical_area`:
+    The critical area depends on the choice `critical_area`:
 
     continuity : f_e = H a' (default: the only choice without a jump of the force)
     printed    : Eq. 4 as printed

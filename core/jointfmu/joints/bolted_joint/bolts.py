@@ -91,7 +91,7 @@ class BoltSprings:
     def active_stiffness(self, preload_force: Array, elongation: Array) -> Array:
         """Stiffness dF/de (b) [N/m] of each bolt; 0 if its head has lifted off.
 
-        At lift-off: the mean of the stiffness before and after.
+        At lift-off, the result is the mean of the stiffness before and after.
         """
         force = preload_force + self.stiffness * elongation
         pulling = np.where(

@@ -71,7 +71,7 @@ class Contact:
 
     @cached_property
     def pressure_transfer(self) -> Array:
-        """Matrix (m, n) [1] that gives the pressures of the friction patches from those of the points."""
+        """Matrix (m, n) [1] that maps pressures of the points to pressures of the friction patches."""
         return pressure_transfer(self.points, self.patches)
 
     def patch_approach(self, approach: Array) -> Array:
@@ -148,9 +148,9 @@ def force_transfer(points: PressureDistribution, patches: FrictionPatches) -> Ar
 
 
 def pressure_transfer(points: PressureDistribution, patches: FrictionPatches) -> Array:
-    """Matrix (m, n) [1] that gives the pressures of the friction patches from those of the contact points.
+    """Matrix (m, n) [1] that maps the pressures of contact points to the pressures of friction patches.
 
-    It distributes the normal forces as `force_transfer` does.
+    The matrix distributes the normal forces as `force_transfer` does.
     """
     return force_transfer(points, patches) * points.area_share / patches.area_share[:, None]
 

@@ -368,9 +368,10 @@ def solve_newton(
 
     Returns the last trial state, and whether the method converged.
 
-    It starts at modal coordinates a (k) [m] with the Jacobian (k, k) [N/m] of an earlier state: in a divided
-    load step, too, that at the start of the load step. The Jacobian is reused, with Broyden's update, after a
-    full correction that reduces the residual below JACOBIAN_REUSE_RESIDUAL_DECREASE; otherwise J is computed.
+    The method starts at modal coordinates a (k) [m] with the Jacobian (k, k) [N/m] of an earlier state: in a
+    divided load step, too, that at the start of the load step. The Jacobian is reused, with Broyden's update,
+    after a full correction that reduces the residual below JACOBIAN_REUSE_RESIDUAL_DECREASE; otherwise J is
+    computed.
     """
     q = load_step.displacement_at(step_fraction)
     tolerance_factor = 1.0 if step_fraction == 1.0 else INTERMEDIATE_TOLERANCE_FACTOR

@@ -68,7 +68,7 @@ def contact_points(pressure_source: PressureSource) -> PressureDistribution:
 
 @lru_cache(maxsize=8)
 def find_friction_patches(pressure_source: PressureSource) -> FrictionPatches:
-    """Patches that carry the friction of a joint: those of its pressure field, or reduced from its nodes."""
+    """Friction patches of a joint: stated in its pressure field, or reduced from its pressure nodes."""
     stated = pressure_source.friction_patches() if isinstance(pressure_source, NodalField) else None
     if stated:
         return stated
@@ -97,7 +97,7 @@ class JointInputs(NamedTuple):
 
     @property
     def input_summary(self) -> str:
-        """Inputs that are not zero, and a temperature that is not that of tightening, as text; without
+        """Inputs that are not zero, and a temperature other than at tightening, as text; without
         rates."""
         names = ("preload", "moment", "s_rel_x", "s_rel_y", "s_rel_z", "theta_x", "theta_y", "theta_z")
         values = dict(zip(names, (self.preload, self.moment, *self.displacement), strict=True))
@@ -195,7 +195,7 @@ class BoltedJointSpring:
         return lru_cache(maxsize=2)(partial(self.contact.preload_state, self.joint))
 
     def preload_at_temperature(self, preload: float, temperature: float) -> float:
-        """Preload [N] of each bolt at a temperature [K], from that at tightening [N]."""
+        """Preload [N] of each bolt at a temperature [K], from the preload at tightening [N]."""
         return float(preload_at_temperature(self.joint, preload, temperature))
 
     def preloaded_approach(self, preload: float, moment: float) -> Array:

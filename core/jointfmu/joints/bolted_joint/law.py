@@ -365,7 +365,8 @@ def working_preload(joint: AnyBoltedJoint, preload: Number) -> Number:
 
 
 def thermal_mismatch(joint: AnyBoltedJoint, temperature: Number) -> Number:
-    """Free expansion (...) [m] of the clamped members minus that of a bolt, at temperatures (...) [K].
+    """Free expansion (...) [m] of the clamped members minus free expansion of a bolt, at temperatures (...)
+    [K].
 
     Washers expand as the bolt does.
     """
@@ -398,7 +399,8 @@ def slip_force(joint: AnyBoltedJoint, working_force: Number) -> Number:
 def bolt_pressures(joint: AnyBoltedJoint, preload: Number, moment: Number) -> tuple[Number, Number]:
     """Mean pressure [Pa] by the preload, and mean pressure [Pa] of a bolt row by the moment.
 
-    They are the pressures of a node with preload_pressure_ratio = 1 or moment_pressure_ratio = 1.
+    A node with preload_pressure_ratio = 1 has the first pressure, one with moment_pressure_ratio = 1 the
+    second.
     """
     left = working_preload(joint, preload)
     return left * joint.n_bolts / joint.A_0, moment / joint.row_distance / joint.A_0

@@ -159,9 +159,9 @@ def elastic_member_sums(
     bolt_force: Array,
     loop_energy: Number,
 ) -> dict[str, Number]:
-    """Sums of the complete joint in place of those of the interface, for a joint with elastic members.
+    """Sums of the complete joint, which replace sums of the interface if the members are elastic.
 
-    These are the stiffness, the bolt elongation and the elastic energy.
+    The sums are the stiffness, the bolt elongation and the elastic energy.
 
     bolt_force  : (b) [N] at tightening
     loop_energy : [J/m2] of the friction patches

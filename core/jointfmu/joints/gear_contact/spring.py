@@ -16,7 +16,7 @@ from ...quantity import Array, Number, quantity_field
 
 @dataclass(frozen=True, kw_only=True)
 class GearContactParameters(Yu2022):
-    """Parameters of the gear contact: those of the law of Yu 2022."""
+    """Parameters of the gear contact with the law of Yu 2022: the parameters of this law."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,7 +35,8 @@ class TableGearContactParameters(TableLaw):
     def real_area(self, pressure: Number) -> tuple[Number, Number]:
         """Real area (...) [m2] at pressures (...) [Pa] and its elastic fraction [1].
 
-        A table does not contain the area: it is that of spots that all yield, load over hardness.
+        A table of the stiffness does not contain the area. It is taken as load over hardness, as if all spots
+        yield.
         """
         return self.A_0 * pressure / self.H, 0.0 * pressure
 

@@ -83,7 +83,7 @@ def base_pitch(mesh: MeshParameters) -> Number:
 def deflection(mesh: MeshParameters, motion: Sequence[Number]) -> Number:
     """Deflection s_rel [m] of the mesh along the line of action, at wheel motions (phi1, w1, phi2, w2).
 
-    It is r_b1 phi1 + r_b2 phi2, reduced in magnitude by half the backlash; 0 within the backlash.
+    s_rel is r_b1 phi1 + r_b2 phi2, reduced in magnitude by half the backlash; 0 within the backlash.
     """
     phi1, _, phi2, _ = motion
     rolling = mesh.r_b1 * phi1 + mesh.r_b2 * phi2
@@ -94,7 +94,7 @@ def deflection(mesh: MeshParameters, motion: Sequence[Number]) -> Number:
 def mesh_phase(mesh: MeshParameters, motion: Sequence[Number]) -> Number:
     """Phase xi [1] of the mesh cycle at wheel motions (phi1, w1, phi2, w2).
 
-    It is the mean rolling distance over the base pitch.
+    The phase is the mean rolling distance over the base pitch.
     """
     phi1, _, phi2, _ = motion
     return 0.5 * (mesh.r_b1 * phi1 - mesh.r_b2 * phi2) / base_pitch(mesh)
@@ -234,7 +234,7 @@ def pairs_in_contact(
 
     Each transverse section of a helical mesh is a spur mesh, see `_pairs_in_section`. The phases of the
     sections are spread evenly over `overlap_ratio` cycles, so the number of pairs is the mean over this
-    range. Its mean over a cycle stays the contact ratio; its fluctuation is smaller than that of a spur mesh.
+    range. Its mean over a cycle stays the contact ratio; its fluctuation is smaller than in a spur mesh.
     """
     helical = overlap_ratio > _MIN_OVERLAP_RATIO
     length = np.where(helical, overlap_ratio, 1.0)

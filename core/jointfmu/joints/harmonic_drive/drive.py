@@ -41,7 +41,7 @@ MAX_TEMPERATURE_COEFFICIENT = 0.2
 
 @dataclass(frozen=True, kw_only=True)
 class DriveParameters(ABC):
-    """Parameters of a harmonic drive except those of its midline: torque over wind-up without hysteresis."""
+    """Parameters of a harmonic drive except the midline (torque over wind-up without hysteresis)."""
 
     ratio: float = quantity_field(
         "1", "speed ratio of wave generator and output; negative: they turn in opposite senses; not 0"
@@ -190,7 +190,7 @@ class DriveParameters(ABC):
     def effective_load_loss_back(self) -> Number:
         """Share of the load torque [1] lost by friction if the load drives the motor.
 
-        It is load_loss_back, or load_loss if that is negative.
+        The share is load_loss_back, or load_loss if load_loss_back is negative.
         """
         return select(self.load_loss_back < 0.0, self.load_loss, self.load_loss_back)
 

@@ -162,7 +162,7 @@ class HysteresisSliders(Sliders):
     def solve_wind_up(self, curve: Curve, history: Array, torque: ArrayLike) -> Array:
         """Wind-up (...) [rad] at which midline and friction together carry torques (...) [N.m].
 
-        Starts from history variables (..., n).
+        history : history variables (..., n) at the start of the path
 
         Safeguarded Newton iteration: the total torque increases monotonically with the wind-up. The iteration
         starts at the present wind-up, limited to the range in which not all sliders slip.
@@ -201,7 +201,7 @@ def _find_limit_torque(
 ) -> float:
     """Friction limit M_f [N.m] for which the loop through rated torque opens by hysteresis_loss.
 
-    Found by fixed-point iteration.
+    A fixed-point iteration finds M_f.
 
     sliders_with_unit_limit : sliders with the sum of limits 1 N.m
     half_loop_torque        : [N.m] midline torque at half of hysteresis_loss. At zero total torque the

@@ -264,7 +264,7 @@ def peak_pressure(drive: ContactPairDriveParameters, torque: Number) -> tuple[Nu
 def pair_log_area(drive: ContactPairDriveParameters, torque: Number) -> Number:
     """Log-area u (...) [1] of the largest spot of the contact pair at torques (...) [N.m].
 
-    It follows from the mean pressure.
+    The log-area follows from the mean pressure of the pair.
     """
     law = drive.pair_law
     start, power = law.spot_distribution().log_sum_over_spots("load", 0.0)
@@ -274,8 +274,8 @@ def pair_log_area(drive: ContactPairDriveParameters, torque: Number) -> Number:
 def pair_stiffness(drive: ContactPairDriveParameters, torque: Number) -> tuple[Number, Number]:
     """Stiffness K_TS (...) [N.m/rad] of the contact pair at torques (...) [N.m], and dK_TS/dT [1/rad].
 
-    Computed from the mean pressure: the tangential stiffness of a point is nearly proportional to its
-    pressure.
+    K_TS is computed from the mean pressure, as the tangential stiffness of a point is nearly proportional to
+    its pressure.
     """
     peak, pressure_slope = peak_pressure(drive, torque)
     spots, u = drive.pair_law.spot_distribution(), pair_log_area(drive, torque)

@@ -178,7 +178,7 @@ class CatalogueDriveParameters(PrescribedDriveParameters):
     def corner_half_width_ratio(self) -> Number:
         """Half-width of a smoothed corner over its wind-up [1].
 
-        It is at least MIN_CORNER_HALF_WIDTH_OVER_WIND_UP.
+        The ratio is at least MIN_CORNER_HALF_WIDTH_OVER_WIND_UP.
         """
         return np.maximum(self.corner, MIN_CORNER_HALF_WIDTH_OVER_WIND_UP)
 

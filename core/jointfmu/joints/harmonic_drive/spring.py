@@ -160,7 +160,7 @@ class HarmonicDriveSpring:
 
 
 def _split_history(history: Array) -> tuple[Array, Array]:
-    """Split history variables (..., n) into those of the hysteresis and those of the friction."""
+    """Split history variables (..., n) into history variables of hysteresis and of friction."""
     return history[..., : hysteresis.HISTORY_LAYOUT.size], history[..., hysteresis.HISTORY_LAYOUT.size :]
 
 

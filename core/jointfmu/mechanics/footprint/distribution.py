@@ -89,7 +89,9 @@ class FrictionPatches(PressureDistribution):
 def moment_pressure(area_share: Array, y: Array, preload_pressure_ratio: Array) -> Array:
     """Pressure (n) [1/m] by a moment of 1 N.m on an area of 1 m2, linear in the distance from the centre.
 
-    It is p (y - y_p)/sum(area_share p (y - y_p)^2): p = preload_pressure_ratio, y_p centre of pressure.
+    The pressure is p (y - y_p)/sum(area_share p (y - y_p)^2), p = preload_pressure_ratio, y_p centre of
+    pressure.
+
     area_share, y [m], preload_pressure_ratio : (n) as in PressureDistribution
 
     Raises ValueError if all nodes in contact have the same y.

@@ -12,7 +12,7 @@ fitted: to the friction of rigid motions of the tilted contact for laws p ~ delt
 poles at loaded nodes. The sums that `reduce_points` keeps to round-off are kept here too.
 
 The fit uses rounded numbers (`reproducible`), so its result is the same on every processor.
-studies/fields_explanation.py prints the deviation of the friction from that of all nodes.
+studies/fields_explanation.py prints the deviation of the friction from friction at all nodes.
 """
 
 from dataclasses import dataclass, replace
@@ -102,8 +102,8 @@ def reduce_patches(
 
     start_points : distribution from which the initial patches are selected; None: `distribution`
 
-    Kept to round-off: the sums and first moments of share, preload_pressure_ratio and moment_pressure_ratio
-    (weighted by share), and the second moments of share.
+    The patches keep to round-off: the sums and first moments of share, preload_pressure_ratio and
+    moment_pressure_ratio (weighted by share), and the second moments of share.
 
     Raises ValueError if max_patch_count is too small to keep these sums.
     """

@@ -36,8 +36,8 @@ class BoltedPlate:
     studies/bolted_joint_explanation.py compares p with two elastic plates.
 
     If an edge of the plate or another hole cuts the disc of a bolt, its pressure is multiplied by an
-    exponential function of the position, so that the resultant stays on the axis of the bolt.
-    Valid for flat plates that do not bend, with a thickness of at least about half a bolt diameter.
+    exponential function of the position, so that the resultant stays on the axis of the bolt. The model is
+    valid for flat plates that do not bend, with a thickness of at least about half a bolt diameter.
     """
 
     length: float = quantity_field("m", "length of the plate along x", gt=0.0)
@@ -166,9 +166,9 @@ def has_one_bolt_row(plate: BoltedPlate) -> bool:
 def equivalent_bolt_rows(bolt_y: Array) -> tuple[float, float]:
     """Equivalent pair of bolt rows: bolts per row N_b [1] and distance L_a [m], for bolts at y (n) [m].
 
-    A moment changes the force of a bolt in the equivalent rows by as much as that of the outermost bolts. N_b
-    is the number of outermost bolts, L_a = sum(y^2)/(N_b max|y|), y from the centre. For two equal rows L_a
-    is their distance.
+    A moment changes the force of a bolt in the equivalent rows as much as the force of the outermost bolts.
+    N_b is the number of outermost bolts, L_a = sum(y^2)/(N_b max|y|), y from the centre. For two equal rows
+    L_a is their distance.
     """
     distances = bolt_y - np.mean(bolt_y)
     max_distance = float(np.max(np.abs(distances)))

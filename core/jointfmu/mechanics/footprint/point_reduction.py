@@ -51,11 +51,11 @@ _LOW_DISCREPANCY_INCREMENTS = successive_powers(1.0 / 1.1673039782614187, 4)
 def reduce_points(distribution: PressureDistribution, max_point_count: int) -> PressureDistribution:
     """Reduce a pressure distribution to at most `max_point_count` of its nodes with other shares.
 
-    Returns the distribution itself if it has no more nodes.
-    Kept to round-off: the sums and first moments of share, preload_pressure_ratio and moment_pressure_ratio
-    (weighted by share), and the second moments of share.
-    Kept exactly: the largest pressure at any preload and moment, if max_point_count is at least
-    MIN_POINTS_FOR_PEAK_NODES, and the symmetry of the contact, for at least MIN_SYMMETRY_GROUPS groups.
+    Returns the distribution itself if it has no more nodes. The points keep to round-off: the sums and first
+    moments of share, preload_pressure_ratio and moment_pressure_ratio (weighted by share), and the second
+    moments of share. They keep exactly: the largest pressure at any preload and moment, if max_point_count is
+    at least MIN_POINTS_FOR_PEAK_NODES, and the symmetry of the contact, for at least MIN_SYMMETRY_GROUPS
+    groups.
 
     Raises ValueError if max_point_count is too small to keep the sums.
     """

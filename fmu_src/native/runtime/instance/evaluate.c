@@ -134,7 +134,7 @@ void instance_warn_of_lost_start_values(Instance *m)
     m->state.reported_warnings |= LOST_START_VALUE;
 }
 
-/* Those of the warnings that would not exist with the start values of inputs that the host has set to 0. */
+/* Warnings that would not exist if inputs that the host has set to 0 had their start values. */
 static unsigned find_warnings_of_lost_start_values(Instance *m, unsigned warning_bits)
 {
     double inputs[N_INPUTS + 1]; /* C has no empty arrays */

@@ -83,7 +83,7 @@ static inline double segment_parameter(const Curve *curve, int segment, double x
  * even number of further nodes; `curve_finish`. A piece starts at the last node of the one before; the derivative of
  * the stiffness may jump between them. */
 
-/* Memory for at least `n_nodes` nodes, with `n_quantities` further quantities on each segment: that of the table
+/* Memory for at least `n_nodes` nodes, with `n_quantities` further quantities on each segment: memory of the table
  * before, if it suffices. `error` is the relative error of the data themselves. false: no memory is left, with the
  * reason; or, without a reason, more than CURVE_NODES nodes. */
 bool curve_begin(Curve *curve, int n_nodes, int n_quantities, double error, Text *reason);
@@ -135,7 +135,7 @@ static inline void segment_derivatives(const Curve *curve, int segment, double t
         y[4] = (24.0 * a[4] + t * 120.0 * a[5]) * (inverse_length * inverse_length * inverse_length * inverse_length);
 }
 
-/* The same at any displacement x, also beyond the table. */
+/* Load y[0] and its derivatives up to `order` at any displacement x, also beyond the table. */
 void curve_evaluate(const Curve *curve, double x, int order, double *y);
 
 /* Bucket of a load, from the second segment on: the bit pattern of a positive number increases with it. */

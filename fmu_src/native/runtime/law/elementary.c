@@ -8,7 +8,7 @@
 
 #include "elementary_tables.h" /* generated */
 
-/* Adding and subtracting it rounds a double to an integer. */
+/* Number whose addition and subtraction round a double to an integer. */
 #define ROUNDING_SHIFT 0x1.8p52
 
 typedef struct {
@@ -42,7 +42,7 @@ static inline DoubleDouble two_sum(double a, double b)
     return (DoubleDouble){sum, (a - (sum - part)) + (b - part)};
 }
 
-/* The same, if |a| >= |b| or a is zero. */
+/* a + b and its round-off, if |a| >= |b| or a is zero. */
 static inline DoubleDouble fast_two_sum(double a, double b)
 {
     const double sum = a + b;

@@ -36,7 +36,7 @@ static inline int first_at_limit(const double *limit_excess, int n)
 
 /* Vectorise by four: two pairs of sliders hide the latency of dependent operations. No row overlaps another. */
 #ifdef __clang__
-#pragma clang diagnostic ignored "-Wpass-failed" /* sanitizers prevent it */
+#pragma clang diagnostic ignored "-Wpass-failed" /* sanitizers prevent vectorization */
 #define VECTORIZE_4 _Pragma("clang loop unroll(disable) vectorize(assume_safety) vectorize_width(4)")
 #else
 #define VECTORIZE_4

@@ -85,7 +85,7 @@ static inline void add_resultant(int n, const double *x, const double *y, const 
         force[d] += sum[d][0] + sum[d][1];
 }
 
-/* Elastic predictor of all sliders. Returns the number of the first slider (even) at its limit, or beside one that is;
+/* Elastic predictor of all sliders. Returns the number of the first slider at its limit, rounded down to an even number;
  * `force` is the resultant of those before it. `use_avx`: see `has_avx`. */
 int sliders_predict(bool use_avx, int n, const Sliders2D *s, double *const force_end[2], double force[3]);
 
@@ -96,7 +96,7 @@ enum { MAPPING_FORCE, MAPPING_LOSS = 5, MAPPING_SLIP, N_MAPPING };
  * change. */
 void sliders_return_map(bool use_avx, int first, int end, const Sliders2D *s, double *const results[N_MAPPING],
                         bool forces_only);
-/* Sum of such results. */
+/* Sum of results of `sliders_return_map`. */
 void sliders_resultant(bool use_avx, int first, int end, const Sliders2D *s, double *const results[N_MAPPING],
                        SliderResultant *sum);
 

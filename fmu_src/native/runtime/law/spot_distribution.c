@@ -80,7 +80,7 @@ bool solve_largest_spot(const SpotDistribution *spots, const double *c, double p
     if (!(log_load >= spots->min_log_load && log_load <= spots->max_log_load)) {
         text_append_format(reason,
                            "pressure = %g Pa is outside [%.3g, %.3g]: its largest spot is not representable "
-                           "beside the critical area %.3g m2 of this surface",
+                           "with the critical area %.3g m2 of this surface",
                            pressure, portable_exp(spots->min_log_load) / spots->nominal_area,
                            portable_exp(spots->max_log_load) / spots->nominal_area, spots->reference_area);
         return false;

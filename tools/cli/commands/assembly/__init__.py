@@ -74,7 +74,7 @@ def judge_stiffness_and_preload(
 def replace_assembly_parameters(
     parameter_file: ParameterFile, assembly: "Assembly", include_bolts: bool
 ) -> ParameterFile:
-    """Replace contact area and materials in the parameters of a joint by those of an assembly.
+    """Set contact area and materials in the parameters of a joint to the values of an assembly.
 
     include_bolts : also set number and rows of the bolts
 

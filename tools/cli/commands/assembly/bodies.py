@@ -105,7 +105,7 @@ def build_assembly(
     contact_field: ContactField,
     bolt_positions: Array | None,
 ) -> tuple["Assembly", list[str]]:
-    """Build two plates with bolts whose contact is that of a pressure field.
+    """Build two plates with bolts whose contact area is the area of a pressure field.
 
     Returns the assembly and notes about its shape.
 

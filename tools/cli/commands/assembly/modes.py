@@ -87,7 +87,7 @@ def _modes_to_json(
     modes: "NaturalModes",
     uniform_pressure_modes: "NaturalModes",
 ) -> dict[str, object]:
-    """JSON object of the natural frequencies, also those under uniform pressure."""
+    """JSON object of the natural frequencies under the computed and under uniform pressure."""
     rows = zip(modes.frequency.tolist(), uniform_pressure_modes.frequency.tolist(), strict=True)
     return {
         "assembly": assembly_name,

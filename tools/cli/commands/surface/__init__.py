@@ -170,7 +170,7 @@ def _find_points(
 ) -> InterfacePoints:
     """Points of the interface law `table`: stiffness over pressure of the scanned surfaces.
 
-    By boundary elements with `--solve`, else from the tail of the height distribution.
+    With `--solve`, boundary elements give the stiffness; without, the tail of the height distribution.
     """
     names = expand_to_sides("material", args.material)
     assert names is not None  # the option has a default
@@ -190,7 +190,7 @@ def _find_points(
 
 
 def _check_rms_heights(identified_surface: "Identification", accept_any_height: bool) -> None:
-    """Raise ValueError for rms heights above those of any machined surface: most often the unit is wrong."""
+    """Raise ValueError for rms heights that no machined surface has; most often the unit is wrong."""
     for name, scan in zip(identified_surface.file_names, identified_surface.scans, strict=True):
         if scan.rms_height > MAX_RMS_HEIGHT and not accept_any_height:
             raise InputRefusal(

@@ -74,8 +74,8 @@ def make_shear_loop_law(
 ) -> tuple[HysteresisLaw, FitFacts]:
     """Make the hysteresis law in shear at a preload [N] of each bolt, and facts about the joint.
 
-    series_stiffness : [N/m] of a structure in series; None: rigid. The displacement is that of joint and
-                       structure together, and Masing's rule holds for both together. The facts describe the
+    series_stiffness : [N/m] of a structure in series; None: rigid. The displacement is the sum for joint
+                       and structure, and Masing's rule holds for both together. The facts describe the
                        joint without the structure.
     max_displacement : [m] end of the table for elastic sides
 
@@ -372,8 +372,8 @@ def _check_loops(
     stiffness_ratio : measured stiffness over stiffness of the start values [1]
     joint, preload  : joint with the start values, preload [N] of each bolt
 
-    Raises ValueError for loops that bear after slip. Raises InputRefusal for a stiffness far from that of the
-    start values, and for a slip force without a plausible friction coefficient.
+    Raises ValueError for loops that bear after slip. Raises InputRefusal for a stiffness far from the
+    stiffness of the start values, and for a slip force without a plausible friction coefficient.
     """
     if bearing := loops.find_bearing():
         clearance, slip_change = bearing

@@ -76,7 +76,7 @@ COMPLETE_JOINT_ENGINES = VariableJoint(MODELS[0])
 
 
 def joint_stiffness(joint: AnyBoltedJoint, preload: Array, direction: str = "normal") -> Array:
-    """Stiffness (n) [N/m] of the tightened joint at preloads (n) [N], equal to the one of the FMU.
+    """Stiffness (n) [N/m] of the tightened joint at preloads (n) [N], equal to the output of the FMU.
 
     direction : "normal" (K_zz) or "tangential" (K_xx)
     """

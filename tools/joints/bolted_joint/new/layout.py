@@ -42,7 +42,7 @@ def bolt_positions(options: DrawingOptions, bolt_count: int) -> Array:
     """
     texts, circle = options["at"], options["circle"]
     if texts and circle:
-        raise ValueError("--at beside --circle: expected one of them")
+        raise ValueError("--at with --circle: expected one of them")
     if options["grid"] and not (texts and "," not in texts[0]):
         raise ValueError(f"--grid = {options['grid']!r} needs the distances of the outermost bolts, --at LxW")
     if circle:
@@ -80,7 +80,7 @@ def _grid_positions(grid_lengths: Sequence[float], bolt_count: int, grid_text: s
             f"--at = {min(grid_lengths):g} m is outside [0, inf): distance of the outermost bolts"
         )
     if bolt_count == 1 and max(grid_lengths) > 0.0:
-        raise ValueError("--at LxW beside one bolt: expected the number of --bolts, as in 4xM12")
+        raise ValueError("--at LxW for one bolt: expected the number of --bolts, as in 4xM12")
     columns, rows = _grid_size(grid_lengths, bolt_count, grid_text)
     x, y = (
         0.5 * span * (np.linspace(-1.0, 1.0, n) if n > 1 else np.zeros(1))

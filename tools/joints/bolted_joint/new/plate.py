@@ -112,7 +112,7 @@ def read_drawing(options: DrawingOptions) -> DrawnJoint:
     moduli = (sheet.get_value("side1.E"), sheet.get_value("side2.E"))
     for name, value in (("field", "computed"), ("sides", "elastic"), ("attached", options["attached"])):
         if options["tapped"] and options["thickness"] is None and value and options[name] == value:
-            raise ValueError(f"--{name} {value} beside --tapped: expected --thickness of both plates for it")
+            raise ValueError(f"--{name} {value} with --tapped: expected --thickness of both plates for it")
     bolt = clamp_bolt(options, thread, (length, width), positions, hole, moduli)
     plate = BoltedPlate(
         length=length,
@@ -186,7 +186,7 @@ def make_joint(options: DrawingOptions) -> NewJoint:
 
 
 def _hole_diameter(options: DrawingOptions, thread: Thread) -> tuple[float, tuple[str, str]]:
-    """Diameter [m] of the clearance hole: stated, or that of the thread."""
+    """Diameter [m] of the clearance hole: stated, or from the table of threads."""
     if options["hole"] is None:
         return thread.hole, ("standard", f"{thread_source('hole')} for {thread.name}")
     return parse_value("hole", options["hole"]), ("user", "stated on the drawing")
@@ -364,7 +364,7 @@ def _add_bolts(
 def _add_thermal_parameters(parameter_sheet: ParameterSheet, clamped_bolt: ClampedBolt) -> None:
     """Add clamped lengths and expansion of the bolts to the sheet.
 
-    By these, the temperature changes the preload.
+    With these parameters, the temperature changes the preload.
     """
     steel = find_row("materials", "steel")
     alpha, text = steel.numbers["alpha"], "bolts of steel" + (" with washers" if clamped_bolt.washers else "")
@@ -384,7 +384,7 @@ def _add_embedding_loss(
     clamped_bolt: ClampedBolt,
     height_range: faces.HeightRange | None,
 ) -> float:
-    """Add the preload loss [N] by embedding to the sheet, and return it."""
+    """Add the preload loss [N] by embedding to the parameter sheet, and return it."""
     if options["embedding"] is not None:
         stated = parse_quantity("embedding", options["embedding"])
         parameter_sheet.add_drawing_number("embedding", stated)

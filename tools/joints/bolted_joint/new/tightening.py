@@ -101,7 +101,7 @@ def find_preload(
 def _check_options(options: DrawingOptions) -> None:
     """Raise ValueError for options that contradict each other, or that would have no effect."""
     if options["preload"] is not None and options["torque"] is not None:
-        raise ValueError("--torque beside --preload: state one of them")
+        raise ValueError("--torque with --preload: state one of them")
     for name in ("thread_friction", "head_friction"):
         if options[name] is None or options["torque"] is not None:
             continue

@@ -273,7 +273,7 @@ def _fit_contact_pair_law_or_note(
     try:
         drive: DriveParameters = fit_contact_pair_law(catalogue_row, start_parameters).parameters.values
     except RuntimeError as error:
-        return None, [f"the {CONTACT_PAIR_LAW_TEXT} cannot be told beside it: {error}"]
+        return None, [f"the {CONTACT_PAIR_LAW_TEXT} cannot be compared with it: {error}"]
     return drive, []
 
 

@@ -48,7 +48,7 @@ RAD_PER_ARCMIN = COLUMN_UNITS["angle"]["arcmin"]
 
 
 def wind_up(drive: DriveParameters, torque: Array) -> Array:
-    """Wind-up (...) [rad] of a drive without hysteresis at torques (...) [N.m], equal to that of its FMU."""
+    """Wind-up (...) [rad] of a drive without hysteresis at torques (...) [N.m], equal to its FMU's output."""
     return torque_curve(drive).odd_inverse(torque)
 
 
@@ -87,7 +87,7 @@ def scale_stiffness(
 ) -> ParameterFile:
     """Scale the stiffness of the start parameters to a measured curve, angles (n) [rad] at torques (n) [N.m].
 
-    Only if all STIFFNESS_PARAMETERS of the law are among the names to fit; else `start_file` is returned.
+    `start_file` is returned unchanged unless all STIFFNESS_PARAMETERS of the law are among the names to fit.
     """
     ratio = float(np.sum(wind_up(start_file.values, torque) * angle) / np.sum(angle**2))
     level = {
@@ -259,7 +259,7 @@ def stiffness_picture(
 ) -> FitPlot:
     """Plot of the stiffness of a drive up to `max_torque` [N.m], without the corners of the catalogue lines.
 
-    It shows catalogue, fitted law, and errors.
+    The plot shows catalogue, fitted law, and errors.
 
     other_drives : {name: further law to plot}
     """

@@ -51,7 +51,7 @@ HYSTERESIS_STIFFNESS_STARTS_OVER_DRIVE_STIFFNESS = (0.3, 1.0, 3.0, 10.0)
 
 
 def make_law(drive: DriveParameters) -> HysteresisLaw:
-    """Make the hysteresis law of a drive: midline and friction torque, equal to those of the FMU.
+    """Make the hysteresis law of a drive, with midline and friction torque as in its FMU.
 
     Raises ValueError if the parameters allow no such hysteresis.
     """

@@ -104,7 +104,7 @@ def fit(
     if not logs_with_motor_angle and (
         alone := [name for name in fitted_names or () if name in hysteresis.ROBOT_LOG_FITTED_PARAMETERS]
     ):
-        raise ValueError(f"{label}: {alone[0]} needs the columns q and q_motor beside the time")
+        raise ValueError(f"{label}: {alone[0]} needs the columns q and q_motor in addition to time")
     _check_speeds(label, samples)
     notes = _sensor_notes(samples)
     friction_names = [

@@ -181,7 +181,7 @@ class FittedLogFriction:
     def total_inertia(self) -> float:
         """Inertia [kg.m2] of arm and rotor at the joint, or of the rotor if a sensor measures the load.
 
-        Only fits to logs with the column time have it.
+        The inertia is known for logs with the column time only.
         """
         return float(self.linear_unknowns[0])
 

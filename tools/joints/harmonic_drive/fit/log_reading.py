@@ -321,7 +321,7 @@ def _motor_torque(
         )
     if torque_constant is None:
         raise ValueError(
-            f"{log_columns.path}: has a current alone; expected --torque-constant [N.m/A] beside it"
+            f"{log_columns.path}: has the motor current, but no torque; expected --torque-constant [N.m/A]"
         )
     return torque_constant * current
 
@@ -331,7 +331,7 @@ def _joint_torque(
 ) -> Array:
     """Torque (n) [N.m] at the joint of a log without a torque of the motor.
 
-    Raises ValueError if there is none, or if the user has not stated that the torque is that at the joint.
+    Raises ValueError if there is no torque, or if the user has not stated that it is measured at the joint.
     """
     wanted = columns.format_heading({name: COLUMN_UNITS[name] for name in ("tau", "i")})
     if "link_torque" in columns_by_name:

@@ -2,7 +2,7 @@
 
 The ripple is linear in the amplitudes of its sines and cosines. A fit without ripple leaves it in the
 residuals. If a harmonic explains them by more than chance, its sine and cosine become linear terms of the fit
-(`Samples.ripple_terms`), beside inertia and gravity.
+(`Samples.ripple_terms`), in addition to inertia and gravity.
 """
 
 from collections.abc import Sequence

@@ -264,7 +264,7 @@ def fit_table(
 ) -> FitResult:
     """Make a drive with the law `table` from a file with the columns torque and angle, read as in `fit`.
 
-    The law is odd: values at negative torques are averaged with those at positive torques.
+    The law is odd: values at negative and at positive torques are averaged.
 
     Raises ValueError as `fit`, and for a curve that does not include zero torque or does not rise.
     """

@@ -126,8 +126,8 @@ function readToml(text) {
 /** What is wrong with an entry, whatever joint it is of: one line; nothing if all is well. */
 function faultOf(name, entry, own, origins) {
   if (!entry || typeof entry !== "object" || Array.isArray(entry)) return `${name} = ${told(entry)}, expected { value, unit, kind, source }`;
-  const beside = Object.keys(entry).find((key) => !ENTRY_KEYS.includes(key));
-  if (beside) return `${name} has an unknown key ${beside}, allowed are ${ENTRY_KEYS.join(", ")}`;
+  const unknown = Object.keys(entry).find((key) => !ENTRY_KEYS.includes(key));
+  if (unknown) return `${name} has an unknown key ${unknown}, allowed are ${ENTRY_KEYS.join(", ")}`;
   if (!origins.includes(entry.kind)) return `${name}: kind = ${told(entry.kind)}, allowed are ${origins.join(", ")}`;
   if (typeof entry.source !== "string" || !entry.source.trim()) return `${name}: source = ${told(entry.source)}, state where the value comes from`;
   if (!own) return "";
@@ -152,7 +152,7 @@ function heightOf(file, { factor }) {
   const names = Object.keys(stated);
   if (!names.length) return {};
   const twice = [["Rq1", "Ra1"], ["Rq2", "Ra2"], ...names.filter((name) => name !== "h").map((name) => ["h", name])].find((two) => two.every((name) => name in stated));
-  if (twice) return { fault: `${ROUGHNESS}${twice[0]} beside ${ROUGHNESS}${twice[1]}: state one height for each side, or only h` };
+  if (twice) return { fault: `${ROUGHNESS}${twice[0]} with ${ROUGHNESS}${twice[1]}: state one height for each side, or only h` };
   const [first, second] = [1, 2].map((side) => stated[`Rq${side}`] ?? factor * (stated[`Ra${side}`] ?? 0));
   return { height: stated.h ?? Math.sqrt(first * first + second * second), makers: names.map((name) => `${ROUGHNESS}${name}`) };
 }
