@@ -7,6 +7,7 @@ vdi                : load factor, bolt force and opening of joints loaded at the
 shear-lag          : compliance of a lap joint over its closed form
 friction           : force and loss compared with finite elements with Coulomb friction at every element;
                      --joint NAME, --variants, --refinement
+points             : force and loss with nine points in each element of the contact over those with one
 calculix           : loop of a lap joint in CalculiX with *FRICTION (on request; needs `ccx`)
 brake-reuss        : first frequency and damping of the Brake-Reuss beam, and published curves; --images
 brake-reuss-form   : the same with the scanned form of the lap
@@ -253,6 +254,24 @@ def print_friction(options: argparse.Namespace) -> None:
         compare_friction(name, options.variants, options.refinement or 1.0)
 
 
+def print_points(options: argparse.Namespace) -> None:
+    """Print force and loss of reduced joints with nine points in each element, compared with one point."""
+    cells = [f"{what} at {level:g}" for level in CYCLES for what in ("force", "loss")]
+    heading("", "joint", "first way", *cells)
+    for name in options.joint or JOINTS:
+        attached, drawing, wrench = JOINTS[name]
+        one, nine = (PlateJoint.of(attached, drawing, elements=each) for each in (True, False))
+        motion = np.linalg.solve(one.linear.stiffness, wrench) * one.load()[0]
+        found, expected = (
+            {
+                key: follow_loads(joint.spring, joint.preload, motion, list(loads))
+                for key, loads in load_sequences().items()
+            }
+            for joint in (nine, one)
+        )
+        row(name, *friction_deviations(expected, found))
+
+
 # calculix
 
 LAP_LENGTH = 4.0
@@ -348,6 +367,7 @@ if __name__ == "__main__":
             "vdi": lambda _: print_vdi(),
             "shear-lag": lambda _: print_shear_lag(),
             "friction": print_friction,
+            "points": print_points,
             "calculix": print_calculix,
             "brake-reuss": lambda options: lapped_beams.print_plane_faces(options.images),
             "brake-reuss-form": lambda _: lapped_beams.print_scanned_form(),
@@ -356,7 +376,11 @@ if __name__ == "__main__":
         },
         on_request=("calculix", "brake-reuss-meshes"),
         options={
-            "--joint": {"action": "append", "choices": [*JOINTS], "help": "joint of `friction` (all)"},
+            "--joint": {
+                "action": "append",
+                "choices": [*JOINTS],
+                "help": "joint of `friction` and `points` (all)",
+            },
             "--variants": {"action": "store_true", "help": "friction: also with more modes and patches"},
             "--refinement": {"type": float, "help": "divides element sizes (friction: 1, calculix: 0.5)"},
             "--images": {"action": "store_true", "help": "draw the picture of brake-reuss into docs/images"},
