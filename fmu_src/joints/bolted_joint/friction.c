@@ -233,18 +233,18 @@ static TangentSums sum_tangents(const Friction *friction, const double *stick_st
     for (int j = 0; j < n_patches(); j++) {
         const double *patch = data.patches[j], *traction = friction->update[j].traction;
         const double x = patch[POSITION_X], y = patch[POSITION_Y];
-        const double t[3] = {traction[0], traction[1], x * traction[1] - y * traction[0]};
-        double all[6], stick[3], lack[3], centred[3], less[6];
+        const double t[3] = {traction[0], traction[1],
+                             x * traction[1] - y * traction[0] + patch[RADIUS] * traction[2]};
+        double all[6], stick[3], lack[3], less[6];
         stick_tangent(stick_stiffness[j], all);
         for (int d = 0; d < 6; d++)
             less[d] = all[d] - updates[j].tangent[d];
         directional_stiffness(patch, all, stick);
         directional_stiffness(patch, less, lack);
-        point_stiffness(patch, less, centred); /* about its centre, equally many sliders slip in both directions */
         for (int d = 0; d < 3; d++) {
             sums.stick[d] += stick[d];
             sums.lack[d] += lack[d];
-            sums.signed_lack[d] += t[d] < 0.0 ? -centred[d] : centred[d];
+            sums.signed_lack[d] += t[d] < 0.0 ? -lack[d] : lack[d];
         }
     }
     return sums;

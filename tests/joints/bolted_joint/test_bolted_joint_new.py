@@ -41,6 +41,9 @@ PLATE = ["--plate", "200x100", "--bolts", "4xM12", "--at", "160x60", "--grip", "
 STEEL = ["--material", "steel"]
 FACES = [*STEEL, "--Ra", "0.8"]
 LOAD = ["--preload", "30e3"]
+DRAWING = {"plate": (200, 100), "bolts": "4xM12", "at": (160, 60), "grip": 40, "material": "steel"}
+DRAWING |= {"Ra": 0.8, "sides": "rigid"}
+"""Plates of the words above, for Python: the interface alone."""
 STILL = (0.0, 0.0, 0.0)
 
 
@@ -233,22 +236,13 @@ def test_a_torque_gives_a_preload_with_its_range(capsys, tmp_path):
 def test_python_takes_a_torque_too(capsys, tmp_path):
     path = tmp_path / "plate.toml"
     made(capsys, *PLATE, *FACES, *TORQUE, *KNOWN, "--tightening", "angle", path=path)
-    sizes = {
-        "plate": (200, 100),
-        "bolts": "4xM12",
-        "at": (160, 60),
-        "grip": 40,
-        "material": "steel",
-        "Ra": 0.8,
-        "sides": "rigid",
-    }
     friction = {"thread_friction": 0.12, "head_friction": 0.12}
-    joint = jointfmu.bolted_joint(**sizes, torque=84, tightening="angle", **friction)
+    joint = jointfmu.bolted_joint(**DRAWING, torque=84, tightening="angle", **friction)
     file = load_parameter_file(path)
     assert joint.file.inputs == file.inputs
     assert joint.file.ranges == file.ranges
     with pytest.raises(ValueError, match=r"^torque with preload: state one of them"):
-        jointfmu.bolted_joint(**sizes, torque=84, preload="43kN")
+        jointfmu.bolted_joint(**DRAWING, torque=84, preload="43kN")
 
 
 def test_friction_of_a_torque_widens_the_range(capsys):
@@ -433,20 +427,12 @@ def test_the_torque_turns_the_head_on_the_washer(capsys, tmp_path):
 
 
 def test_python_takes_washers(capsys):
-    sizes = {
-        "plate": (200, 100),
-        "bolts": "4xM12",
-        "at": (160, 60),
-        "grip": 40,
-        "material": "steel",
-        "Ra": 0.8,
-    }
-    sizes |= {"preload": 30e3, "sides": "rigid"}
-    none = jointfmu.bolted_joint(**sizes)
-    standard = jointfmu.bolted_joint(**sizes, washers=True)
-    stated = jointfmu.bolted_joint(**sizes, washers=(24, 2.5))
+    none, standard, stated, without = (
+        jointfmu.bolted_joint(**DRAWING, preload=30e3, washers=washers)
+        for washers in (None, True, (24, 2.5), False)
+    )
     assert standard.file.values == stated.file.values
-    assert jointfmu.bolted_joint(**sizes, washers=False).file == none.file
+    assert without.file == none.file
     assert standard.file.values.bolt_stiffness < none.file.values.bolt_stiffness
 
 

@@ -221,9 +221,7 @@ def continued_motion_stiffness(patches: FrictionPatches, friction_update: Fricti
     lost_tangent, result = stick[:, None] * STICK_TANGENT - tangent, []
     for direction in unit_displacements(patches):
         lost = patches.area_share * directional_stiffness(lost_tangent, direction)
-        translation = direction * [1.0, 1.0, 0.0]  # around its centre a patch loses the same both ways
-        signed = patches.area_share * directional_stiffness(lost_tangent, translation)
-        signed = np.where(np.sum(traction * translation, axis=1) < 0.0, -signed, signed)
+        signed = np.where(np.sum(traction * direction, axis=1) < 0.0, -lost, lost)
         stuck = patches.area_share @ (stick * np.sum(direction**2, axis=1))
         result.append(stuck - 0.5 * (np.sum(lost) + abs(np.sum(signed))))
     return result
