@@ -82,7 +82,7 @@ def check_ramp(fmu_name: str, folder: Path, ramp_result: ramp.RampResult) -> lis
 def compare_flavour(fmu_name: str, folder: Path, expected_ramp: ramp.RampResult) -> Check:
     """Compare `expected_ramp` with the ramp of the same FMU in another folder (FMI 3.0 or Python).
 
-    The steps of this ramp are ten times larger.
+    The ramp in the other folder has ten times larger steps.
     """
     worst = _coarse_ramp_deviation(fmu_name, folder, expected_ramp)
     return Check(fmu_name, f"flavour {folder.name}: every output the same", worst, FLAVOUR_TOLERANCE)

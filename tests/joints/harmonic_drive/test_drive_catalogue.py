@@ -157,7 +157,7 @@ def test_every_actuator_with_limits_has_the_stiffness_of_its_row():
         ):
             assert numbers[name][:2] == (float(row[head]), "catalogue")
         for name, head in (("hysteresis_loss", "hysteresis"), ("lost_motion", "lost_motion")):
-            assert numbers[name].bound
+            assert numbers[name].is_upper_limit
             assert numbers[name].value == pytest.approx(float(row[f"{head}_below_arcmin"]) * arcmin)
             assert f"CHA-{row['size']}A" in numbers[name].source
 
@@ -243,7 +243,7 @@ def test_the_limits_of_an_actuator_are_its_own():
         numbers = catalogue.find_drive(f"CHA-{row['size']}A-{ratio}").numbers
         loss = numbers["hysteresis_loss"]
         assert loss.value == pytest.approx(float(row["hysteresis_below_arcmin"]) * math.pi / 10800.0)
-        assert (loss.kind, loss.bound) == ("catalogue", True)
+        assert (loss.kind, loss.is_upper_limit) == ("catalogue", True)
         assert "rated_torque" not in numbers
     assert catalogue.find_drive("HFUC-14-30").numbers["hysteresis_loss"].kind == "estimate"
     assert jointfmu.drive("CHA-14A-30").values["hysteresis_loss"] == 0.0  # a limit is no value

@@ -208,7 +208,7 @@ def _format_number(entry: CatalogueEntry, column: CatalogueColumn) -> str:
     width = len(_format_heading(column))
     if (number := entry.numbers.get(column.name)) is None:
         return f"{'-':{width}}"
-    mark = ("~" if number.kind == "estimate" else "") + ("<" if number.bound else "")
+    mark = ("~" if number.kind == "estimate" else "") + ("<" if number.is_upper_limit else "")
     return (
         f"{mark + format(number.value * conversion_factor(column.unit, column.display_unit), '.4g'):{width}}"
     )

@@ -24,22 +24,22 @@ _RANGE_PATTERN = re.compile(r"(.+?)\s*\.\.\s*(.+)")
 class DrawingQuantity:
     """Quantity of a drawing option: unit, plausible range, limits.
 
-    meaning      : the quantity in words
-    unit         : unit of a number that the user states without one
-    si_unit      : SI unit
-    plausible    : plausible magnitude of a number without a unit [unit]
-    limits       : allowed values with any unit [unit]; the lower one is excluded unless `allows_zero`
-    other_units  : units that users mistake for `unit`
-    extra_units  : {unit that only this quantity has: its size [si_unit]}
-    allows_zero  : whether 0 is a value
-    has_sign     : whether negative numbers are values
-    allows_range : whether LOW..HIGH is a value
+    meaning         : the quantity in words
+    unit            : unit of a number that the user states without one
+    si_unit         : SI unit
+    plausible_range : plausible magnitude of a number without a unit [unit]
+    limits          : allowed values with any unit [unit]; the lower one is excluded unless `allows_zero`
+    other_units     : units that users mistake for `unit`
+    extra_units     : {unit that only this quantity has: its size [si_unit]}
+    allows_zero     : whether 0 is a value
+    has_sign        : whether negative numbers are values
+    allows_range    : whether LOW..HIGH is a value
     """
 
     meaning: str
     unit: str
     si_unit: str
-    plausible: tuple[float, float] = (0.0, math.inf)
+    plausible_range: tuple[float, float] = (0.0, math.inf)
     _: KW_ONLY
     limits: tuple[float, float] = (0.0, math.inf)
     other_units: tuple[str, ...] = ()
@@ -304,7 +304,7 @@ def _parse_value(option: str, text: str, default_unit: str | None) -> float:
             f"{flag} = {text!r}: {error}; {example}{f', or in {others}' if others else ''}"
         ) from None
     magnitude = value / _unit_size(quantity, quantity.unit)
-    low, high = quantity.plausible
+    low, high = quantity.plausible_range
     if (
         not (stated_unit or default_unit)
         and math.isfinite(magnitude)
@@ -354,7 +354,7 @@ def _advise_unit(quantity: DrawingQuantity, number_text: str, magnitude: float) 
 
     Empty for a number without a unit that no other unit makes plausible, if it is also outside the limits.
     """
-    low, high = quantity.plausible
+    low, high = quantity.plausible_range
     size = _unit_size(quantity, quantity.unit)
     candidates = {_unit_size(quantity, unit): unit for unit in reversed((*quantity.extra_units,))}
     candidates |= {_unit_size(quantity, unit): unit for unit in quantity.other_units}

@@ -245,7 +245,7 @@ class Loops:
         size = float(np.ptp(self.motion))
 
         def misfit(rest_motion: float) -> Array:
-            """Sum of squared residuals with a rest motion."""
+            """Force residuals (n) over their standard deviations [1] at the rest position `rest_motion`."""
             residual = (
                 without_friction
                 - force(self.motion - rest_motion)

@@ -309,14 +309,14 @@ class UnknownExchange:
     quantity_label: str
 
     def derived_unknown(self, unknowns: Mapping[str, Unknown]) -> Unknown:
-        """Unknown of the fit for the derived quantity; its start value follows from those of `unknowns`."""
+        """Unknown for the derived quantity; its start value follows from the start values of `unknowns`."""
         start = self.derived_quantity({name: u.start_value for name, u in unknowns.items()})
         return Unknown(self.quantity_label, self.unit, start, 0.0, np.inf)
 
     def restore_unknowns(self, parameter_values: Mapping[str, float], start_value: float) -> dict[str, float]:
-        """Convert values with the derived quantity to values of the original unknowns, by the secant method.
+        """Replace the derived quantity by the value of the unknown that gives it, by the secant method.
 
-        start_value : start value of the exchanged unknown, for the secant method
+        start_value : start value of the replaced unknown, for the secant method
 
         Raises ValueError if no value of the replaced unknown gives the quantity.
         """

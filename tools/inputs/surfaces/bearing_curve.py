@@ -96,7 +96,7 @@ def skewed_tail_ratio(skewness: float) -> float:
         return 1.0
 
     def excess_skewness(s: float) -> float:
-        """Skewness of lognormal heights with the shape parameter s, minus the given skewness."""
+        """Skewness of lognormal heights with the shape parameter s, minus the magnitude of the given one."""
         return float((np.exp(s**2) + 2.0) * np.sqrt(np.expm1(s**2)) - abs(skewness))
 
     s = brentq(excess_skewness, 1e-6, 2.0) * np.sign(skewness)
@@ -111,7 +111,7 @@ class BearingCurve:
     """Sections of a surface by planes, from high planes down.
 
     share       : (n) area share a of the section [1], increasing
-    mean_excess : (n) mean excess of the heights above the plane [m]
+    mean_excess : (n) mean height, above the plane, of all points above the plane [m]
     slope       : (n) rms slope h'_c of the part above the plane [1]
     """
 
@@ -133,8 +133,9 @@ class BearingCurve:
     def decay_length(self) -> Array:
         """Decay length l [m] at each section: p ~ exp(approach/l).
 
-        The decay length is the mean excess. At heavy load the hills interact: where the mean excess of
-        Gaussian heights would be above GAUSSIAN_DECAY_LIMIT h, the mean excess is lowered by the same factor.
+        The decay length is `mean_excess`, the mean height of all points above the section. At heavy load the
+        hills interact: if Gaussian heights of rms h had a mean excess above GAUSSIAN_DECAY_LIMIT h at this
+        section, the mean excess is multiplied by the ratio of this limit to the Gaussian mean excess.
         """
         limit = GAUSSIAN_DECAY_LIMIT / gaussian_mean_excess(self.share)
         return np.asarray(self.mean_excess * np.minimum(limit, 1.0))

@@ -42,18 +42,18 @@ MAX_ITERATIONS = 1000
 class SolvedStiffness:
     """Stiffness of a scan by boundary elements.
 
-    pressure  : (n) nominal pressures [Pa]
-    stiffness : (n) normal stiffness per area [Pa/m]
-    low, high : smallest and largest stiffness of the sub-areas over their geometric mean [1]
-    yielded   : (n) share of the real contact area at the hardness [1]
-    spacing   : spacing of the solved grid [m]
+    pressure           : (n) nominal pressures [Pa]
+    stiffness          : (n) normal stiffness per area [Pa/m]
+    low, high          : smallest and largest stiffness of the sub-areas over their geometric mean [1]
+    plastic_area_share : (n) share of the real contact area at the hardness [1]
+    spacing            : spacing of the solved grid [m]
     """
 
     pressure: Array
     stiffness: Array
     low: float
     high: float
-    yielded: Array
+    plastic_area_share: Array
     spacing: float
 
 
@@ -107,7 +107,7 @@ def solve_stiffness(gap: ArealMap, modulus: float, hardness: float) -> SolvedSti
     contacts = [
         list(_press(part, pressure, modulus, hardness if part is grid else np.inf, steps)) for part in parts
     ]
-    stiffness, yielded, count = (np.array(v) for v in zip(*contacts[0], strict=True))
+    stiffness, plastic_area_share, count = (np.array(v) for v in zip(*contacts[0], strict=True))
     use = count >= MIN_CONTACT_POINTS
     if use.sum() < 2:
         raise ValueError(
@@ -121,7 +121,7 @@ def solve_stiffness(gap: ArealMap, modulus: float, hardness: float) -> SolvedSti
         np.maximum.accumulate(stiffness[use]),
         float(ratio.min()),
         float(ratio.max()),
-        yielded[use],
+        plastic_area_share[use],
         grid.dx,
     )
 

@@ -28,7 +28,7 @@ class InterfacePoints:
     ratio               : K_T/K_N of elastic contact spots [1]
     factor_range        : smallest and largest stiffness over the stiffness of the points [1]
     source              : text on the origin
-    yielded             : (n) share of the contact at the hardness [1]; empty: not computed
+    plastic_area_share  : (n) share of the real contact area at the hardness [1]; empty: not computed
     """
 
     pressure: Array
@@ -36,7 +36,7 @@ class InterfacePoints:
     ratio: float
     factor_range: tuple[float, float]
     source: str
-    yielded: Array = field(default_factory=lambda: np.zeros(0))
+    plastic_area_share: Array = field(default_factory=lambda: np.zeros(0))
 
     def to_csv(self) -> str:
         """Format the points as the CSV file that `new --interface-table` reads."""
@@ -99,7 +99,12 @@ def points_from_solution(
     )
     limits = found.low, found.high
     return InterfacePoints(
-        found.pressure, found.stiffness, materials.ratio, limits, source, yielded=found.yielded
+        found.pressure,
+        found.stiffness,
+        materials.ratio,
+        limits,
+        source,
+        plastic_area_share=found.plastic_area_share,
     )
 
 

@@ -232,7 +232,7 @@ def _hysteresis_limits(series: str, size: str, ratio: float) -> dict[str, Source
         if not same_size:
             text = f"limit for all actuators {row['series']}, none of which has this size"
         value = float(row[head]) * conversion_factor("arcmin", "rad")
-        limits[column] = SourcedNumber(value, kind, f"{text} ({row['source']})", bound=True)
+        limits[column] = SourcedNumber(value, kind, f"{text} ({row['source']})", is_upper_limit=True)
     return limits
 
 
@@ -248,7 +248,8 @@ def _make_entry_with_friction(
     if name != similar_drive.name:
         text = f"that of {similar_drive.name}, of the same size, ratio and stiffness; "
         numbers = {
-            c: SourcedNumber(n.value, "estimate", text + n.source, n.bound) for c, n in numbers.items()
+            c: SourcedNumber(n.value, "estimate", text + n.source, n.is_upper_limit)
+            for c, n in numbers.items()
         }
     source = f"{name}: {friction_row['source']}"
     for column, (head, unit) in _FRICTION_TABLE_HEADINGS.items():

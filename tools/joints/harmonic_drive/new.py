@@ -241,7 +241,7 @@ def _make_joint_with_catalogue_law(
         )
     sourced_numbers["max_torque"] = peak
     facts = {}
-    if "hysteresis_loss" in sourced_numbers and sourced_numbers["hysteresis_loss"].bound:
+    if "hysteresis_loss" in sourced_numbers and sourced_numbers["hysteresis_loss"].is_upper_limit:
         bound = sourced_numbers["hysteresis_loss"]
         text = f"{_short_source(bound)}; not used unless --hysteresis is stated"
         facts["hysteresis_bound"] = (bound.value, "rad", text)

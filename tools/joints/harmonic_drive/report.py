@@ -145,7 +145,9 @@ def _comparison_rows(
     )
     for column, (measured, role) in _LOOP_QUANTITIES.items():
         number = printed[column]
-        yield ComparisonRow(column, "rad", number.value, number.bound, measured(spring), role, number.source)
+        yield ComparisonRow(
+            column, "rad", number.value, number.is_upper_limit, measured(spring), role, number.source
+        )
     known = [column for column in _FRICTION_UNITS if column in printed and printed[column].kind != "estimate"]
     bench = make_test_rig(model, parameter_file) if known else None
     for column in known:
@@ -155,7 +157,7 @@ def _comparison_rows(
         role = ROLE_PARAMETER_SOURCE if is_set else ROLE_PREDICTED
         value = _compute_friction_value(bench, column, printed)
         yield ComparisonRow(
-            column, _FRICTION_UNITS[column], number.value, number.bound, value, role, number.source
+            column, _FRICTION_UNITS[column], number.value, number.is_upper_limit, value, role, number.source
         )
 
 

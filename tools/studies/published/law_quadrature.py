@@ -43,7 +43,7 @@ def _bodies(p: Parameters) -> tuple[float, float]:
 
 
 def _sum_spots(spot_quantity: SpotFunction, spot_density: SpotFunction, edges: Sequence[float]) -> float:
-    """Sum over spots: integral of spot_quantity(a) count(a) over ln a, between successive areas [m2]."""
+    """Integral of spot_quantity(a) spot_density(a) over ln a, between successive spot areas `edges` [m2]."""
     total = 0.0
     for low, high in pairwise(edges):
         if high > low:

@@ -71,8 +71,8 @@ class SystemComponent:
 class SystemModel:
     """Model of a system, for one FMU: its components, and times of the default experiment.
 
-    components        : loads, then joints, then bodies: the inputs of each depend on those before and on
-        states
+    components        : loads, then joints, then bodies: the inputs of each depend on components before it and
+        on states
     stop_time         : stop time [s] of the default experiment
     interval          : communication step [s] of the default experiment
     separate_interval : communication step [s] that separate FMUs would need

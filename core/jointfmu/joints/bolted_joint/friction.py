@@ -66,8 +66,8 @@ def history_layout(patch_count: int) -> HistoryLayout:
 def full_stick_force(packed_forces: Array) -> Array:
     """Traction (m, 3) [Pa] of patches in full stick, from the history variable `packed_forces` (m, 2, n).
 
-    The first slider has the sum of all sliders, and y of the second one the force around the centre. So the
-    slider heights can change with the load while the patch sticks.
+    In full stick, the first slider stores the sums along x and y of all sliders, and the force along y of the
+    second slider stores the force around the centre. So the slider heights can change with the load.
     """
     return np.column_stack([packed_forces[..., 0], packed_forces[:, 1, 1]])
 

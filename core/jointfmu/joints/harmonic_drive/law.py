@@ -245,11 +245,11 @@ def peak_pressure(drive: ContactPairDriveParameters, torque: Number) -> tuple[Nu
         return (saturation * x) ** 2 / root, saturation * x / (bend * root)
 
     def smoothed_torque(squared_torque: Number) -> Number:
-        """Function g [N.m] of the squared saturated torque: its magnitude, smoothed around zero."""
+        """Magnitude sqrt(t^2 + T_s^2) [N.m] of the saturated torque t, smoothed around zero."""
         return np.maximum(np.sqrt(squared_torque + smoothing**2), smoothing)  # if smoothing**2 underflows
 
     def smoothed_torque_increase(squared_torque: Number) -> Number:
-        """Derivative of the function g [1/(N.m)] by the squared saturated torque."""
+        """Function g [N.m] of t^2: smoothed magnitude of the saturated torque, less its value at t = 0."""
         return squared_torque / (smoothed_torque(squared_torque) + smoothing)
 
     zero, rated = drive.zero_torque_pressure, drive.rated_pressure

@@ -78,7 +78,7 @@ def _points_to_json(points: InterfacePoints) -> dict[str, object]:
         "stiffness": points.stiffness.tolist(),
         "ratio": points.ratio,
         "range": list(points.factor_range),
-        "at_hardness": points.yielded.tolist() or None,
+        "at_hardness": points.plastic_area_share.tolist() or None,
         "source": points.source,
     }
 
@@ -280,7 +280,7 @@ def _format_solution(points: InterfacePoints) -> list[str]:
     heads = ("p [MPa]", "k [N/m3]", "at the hardness")
     rows = [
         (f"{p / 1e6:.3g}", f"{k:.3g}", f"{100.0 * share:.0f} %")
-        for p, k, share in zip(points.pressure, points.stiffness, points.yielded, strict=True)
+        for p, k, share in zip(points.pressure, points.stiffness, points.plastic_area_share, strict=True)
     ]
     low, high = points.factor_range
     return [

@@ -198,7 +198,10 @@ def _check_strength(
     bolt = f"{thread.name}-{name}" + ("" if stated else ", the strongest class")
     allowed = vdi2230.assembly_preload(thread, strength, thread_friction)
     if options["torque"] is not None:
-        torque, lowest = parse_quantity("torque", options["torque"]).value, QUANTITIES["preload"].plausible[0]
+        torque, lowest = (
+            parse_quantity("torque", options["torque"]).value,
+            QUANTITIES["preload"].plausible_range[0],
+        )
         if preload.force < lowest:
             raise ValueError(
                 f"--torque = {options['torque']!r} tightens to {preload.force:.3g} N, plausible is at least "
