@@ -166,12 +166,14 @@ static double rotation_increment(const double *history, FrictionArguments argume
 }
 
 /* Friction limits of the sliders: each has that of the sign of its elastic predictor. */
-static void slider_limits(const Friction *friction, const double *history, double increment, const double *limit,
-                          double *slider_limit)
+static inline void slider_limits(const Friction *friction, const double *history, double increment,
+                                 const double *limit, double *restrict slider_limit)
 {
+    const double positive = limit[0], negative = limit[1];
     for (int i = 0; i < FRICTION_SLIDERS; i++)
         slider_limit[i] =
-            limit[history[HISTORY_FRICTION_TORQUE + i] + friction->K[i] * increment < 0.0] * LIMIT_SHARES[i];
+            (history[HISTORY_FRICTION_TORQUE + i] + friction->K[i] * increment < 0.0 ? negative : positive) *
+            LIMIT_SHARES[i];
 }
 
 SliderResultant friction_advance(const Friction *friction, const double *history, FrictionArguments arguments,

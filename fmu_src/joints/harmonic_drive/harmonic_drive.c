@@ -98,27 +98,17 @@ bool tabulate_model(Joint *joint, Text *reason)
 {
     JointModel *model = &joint->model;
     double constants[3], shares[2 * HYSTERESIS_SLIDERS], amplitudes[N_HARMONICS], stiffness;
-    *model = (JointModel){.has_kinematic_error = false};
+    *model = (JointModel){.has_periodic_terms = false};
     model->hysteresis.use_avx = model->friction.use_avx = has_avx();
-    error_amplitudes(0, joint->constants, amplitudes);
+    periodic_amplitudes(0, joint->constants, amplitudes);
     for (int i = 0; i < N_HARMONICS; i++)
-        model->has_kinematic_error |= amplitudes[i] != 0.0;
+        model->has_periodic_terms |= amplitudes[i] != 0.0;
     sticking_stiffness(0, joint->constants, &stiffness);
     friction_tabulate(&model->friction, stiffness);
     hysteresis_constants(0, joint->constants, constants);
     slider_shares(0, joint->constants, shares);
     return tabulate_midline(joint, reason) &&
            hysteresis_tabulate(&model->hysteresis, constants, shares, &joint->curve, reason);
-}
-
-enum { N_ERROR = 3 }; /* kinematic error, its first and second derivative with respect to phi1 */
-
-static void evaluate_kinematic_error(const Joint *joint, const double *inputs, double *error)
-{
-    if (joint->model.has_kinematic_error)
-        kinematic_error(inputs, joint->constants, error);
-    else
-        error[0] = error[1] = error[2] = 0.0;
 }
 
 /* Wind-up at the inputs, which are a motion or a torque, after a path from a history. */
@@ -143,31 +133,40 @@ enum {
     STIFFNESS,
     HYSTERESIS_TORQUE,
     LOSS,
-    ERROR,
-    ERROR_SLOPE,
+    PHI_ERROR,
+    PHI_ERROR_SLOPE,
     DRY_FRICTION,
     N_OUTPUT_ARGUMENTS
 };
-/* Arguments of `friction_arguments`: inputs, torques of midline and hysteresis, derivative of the kinematic error. */
-enum { FRICTION_MIDLINE_TORQUE = N_INPUTS, FRICTION_HYSTERESIS_TORQUE, FRICTION_ERROR_SLOPE, N_FRICTION_ARGUMENTS };
+/* Arguments of `friction_arguments`: inputs, torques of midline and hysteresis, derivative of the kinematic error,
+ * ripple. */
+enum {
+    FRICTION_MIDLINE_TORQUE = N_INPUTS,
+    FRICTION_HYSTERESIS_TORQUE,
+    FRICTION_ERROR_SLOPE,
+    FRICTION_RIPPLE,
+    N_FRICTION_ARGUMENTS
+};
 
-/* Copy the arguments y of `friction_arguments` from the arguments x of `outputs`. */
-static void copy_friction_arguments(const double *x, double *y)
+/* Set the arguments y of `friction_arguments` from the arguments x of `outputs` and the ripple. */
+static void set_friction_arguments(const double *x, double ripple, double *y)
 {
     memcpy(y, x, N_INPUTS * sizeof(double));
     y[FRICTION_MIDLINE_TORQUE] = x[MIDLINE_TORQUE];
     y[FRICTION_HYSTERESIS_TORQUE] = x[HYSTERESIS_TORQUE];
-    y[FRICTION_ERROR_SLOPE] = x[ERROR_SLOPE];
+    y[FRICTION_ERROR_SLOPE] = x[PHI_ERROR_SLOPE];
+    y[FRICTION_RIPPLE] = ripple;
 }
 
 bool joint_evaluate(Joint *joint, const double *inputs, const double *history, double *history_end, double *out,
                     Text *reason)
 {
     JointModel *model = &joint->model;
-    double x[N_OUTPUT_ARGUMENTS], error[N_ERROR];
+    double x[N_OUTPUT_ARGUMENTS];
     (void)reason;
-    evaluate_kinematic_error(joint, inputs, error);
-    model->phi = solve_wind_up(joint, inputs, error[0], history);
+    if (model->has_periodic_terms) /* otherwise they stay zero */
+        periodic_terms(inputs, joint->constants, model->periodic);
+    model->phi = solve_wind_up(joint, inputs, model->periodic[ERROR], history);
     memset(history_end, 0, N_HISTORY * sizeof *history_end);
     model->hysteresis_update = model->friction_update = (SliderResultant){.loss = 0.0};
     if (model->hysteresis.is_active)
@@ -176,11 +175,11 @@ bool joint_evaluate(Joint *joint, const double *inputs, const double *history, d
     x[PHI] = model->phi;
     midline_torque(&joint->curve, model->phi, 1, &x[MIDLINE_TORQUE]);
     x[HYSTERESIS_TORQUE] = model->hysteresis_update.force[0];
-    x[ERROR] = error[0];
-    x[ERROR_SLOPE] = error[1];
+    x[PHI_ERROR] = model->periodic[ERROR];
+    x[PHI_ERROR_SLOPE] = model->periodic[ERROR_SLOPE];
     if (model->friction.is_active) {
         double friction_x[N_FRICTION_ARGUMENTS], y[4];
-        copy_friction_arguments(x, friction_x);
+        set_friction_arguments(x, model->periodic[RIPPLE], friction_x);
         friction_arguments(friction_x, joint->constants, y);
         model->friction_arguments = (FrictionArguments){y[0], y[1], {y[2], y[3]}};
         model->friction_update = friction_advance(&model->friction, history, model->friction_arguments, history_end);
@@ -198,14 +197,14 @@ void joint_derivative(Joint *joint, const double *inputs, const double *history,
 {
     (void)history_end;
     const JointModel *model = &joint->model;
-    double x[2 * N_OUTPUT_ARGUMENTS] = {0.0}, y[3], curve_x[2 * (N_INPUTS + 1)], error[N_ERROR], rate;
-    evaluate_kinematic_error(joint, inputs, error);
+    const double *periodic = model->periodic;
+    double x[2 * N_OUTPUT_ARGUMENTS] = {0.0}, y[3], curve_x[2 * (N_INPUTS + 1)], rate;
     for (int i = 0; i < N_INPUTS; i++) {
         x[i] = curve_x[i] = inputs[i];
         x[N_OUTPUT_ARGUMENTS + i] = curve_x[N_INPUTS + 1 + i] = seed[i];
     }
-    curve_x[N_INPUTS] = error[0];
-    curve_x[2 * N_INPUTS + 1] = error[1] * seed[0];
+    curve_x[N_INPUTS] = periodic[ERROR];
+    curve_x[2 * N_INPUTS + 1] = periodic[ERROR_SLOPE] * seed[0];
     curve_argument_seed(curve_x, joint->constants, &rate);
     midline_torque(&joint->curve, model->phi, 2, y);
     if (ARGUMENT_IS_LOAD)
@@ -215,10 +214,10 @@ void joint_derivative(Joint *joint, const double *inputs, const double *history,
     const double hysteresis_rate = model->hysteresis_update.tangent[0] * rate,
                  loss = history[HISTORY_LOSS] + model->hysteresis_update.loss + model->friction_update.loss;
     const double values[] = {model->phi, y[0],     y[1],     model->hysteresis_update.force[0],
-                             loss,       error[0], error[1], model->friction_update.force[0]};
+                             loss,       periodic[ERROR], periodic[ERROR_SLOPE], model->friction_update.force[0]};
     const double x_rates[] = {
-        rate, y[1] * rate, y[2] * rate, hysteresis_rate, loss_derivative * rate, error[1] * seed[0], error[2] * seed[0],
-        0.0};
+        rate, y[1] * rate, y[2] * rate, hysteresis_rate, loss_derivative * rate, periodic[ERROR_SLOPE] * seed[0],
+        periodic[ERROR_BEND] * seed[0], 0.0};
     enum { N_COMPUTED = N_OUTPUT_ARGUMENTS - PHI };
     _Static_assert(sizeof values == N_COMPUTED * sizeof(double), "a value for each computed argument of outputs");
     _Static_assert(sizeof x_rates == sizeof values, "a rate for each value");
@@ -226,8 +225,9 @@ void joint_derivative(Joint *joint, const double *inputs, const double *history,
     memcpy(x + N_OUTPUT_ARGUMENTS + PHI, x_rates, sizeof x_rates);
     if (model->friction.is_active) {
         double friction_x[2 * N_FRICTION_ARGUMENTS], rates[4];
-        copy_friction_arguments(x, friction_x);
-        copy_friction_arguments(x + N_OUTPUT_ARGUMENTS, friction_x + N_FRICTION_ARGUMENTS);
+        set_friction_arguments(x, periodic[RIPPLE], friction_x);
+        set_friction_arguments(x + N_OUTPUT_ARGUMENTS, periodic[RIPPLE_SLOPE] * seed[0],
+                               friction_x + N_FRICTION_ARGUMENTS);
         friction_arguments_seed(friction_x, joint->constants, rates);
         const SliderResultant friction_torque_rate =
             friction_rate(&model->friction, history, model->friction_arguments,

@@ -54,12 +54,17 @@ SliderResultant friction_advance(const Friction *friction, const double *history
 SliderResultant friction_rate(const Friction *friction, const double *history, FrictionArguments arguments,
                               FrictionArguments rate);
 
+/* Results of `periodic_terms`: kinematic error, its first and second derivative with respect to phi1, ripple of the
+ * friction limits, its derivative. */
+enum { ERROR, ERROR_SLOPE, ERROR_BEND, RIPPLE, RIPPLE_SLOPE, N_PERIODIC_TERMS };
+
 typedef struct {
     Hysteresis hysteresis;
     Friction friction;
-    bool has_kinematic_error;
-    /* Of the last evaluation, for its derivative: wind-up [rad], arguments of the friction, updates of the sliders. */
-    double phi;
+    bool has_periodic_terms;
+    /* Of the last evaluation, for its derivative: wind-up [rad], results of `periodic_terms`, arguments of the friction,
+     * updates of the sliders. */
+    double phi, periodic[N_PERIODIC_TERMS];
     FrictionArguments friction_arguments;
     SliderResultant hysteresis_update, friction_update;
 } JointModel;

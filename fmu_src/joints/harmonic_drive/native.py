@@ -3,7 +3,12 @@
 import casadi as ca
 
 from jointfmu.joints.harmonic_drive import friction, hysteresis, spring
-from jointfmu.joints.harmonic_drive.drive import KINEMATIC_ERROR_HARMONICS, error_amplitudes, kinematic_error
+from jointfmu.joints.harmonic_drive.drive import (
+    FRICTION_HARMONICS,
+    KINEMATIC_ERROR_HARMONICS,
+    error_amplitudes,
+    kinematic_error,
+)
 from jointfmu.joints.harmonic_drive.law import ContactPairDriveParameters, stiffness_with_play
 from jointfmu.joints.harmonic_drive.prescribed_midline import (
     CatalogueDriveParameters,
@@ -48,14 +53,18 @@ def _add_functions(function_graph: FunctionGraph, model: Model) -> None:
     )
     inputs = [ca.SX.sym(i.name) for i in model.inputs]
     locked = _is_torque_input(model)
-    error_terms = [0.0] * 3 if locked else kinematic_error(drive, inputs[0])
+    terms = [*kinematic_error(drive, inputs[0]), *friction.friction_ripple(drive, inputs[0])]
+    doc = "inputs -> kinematic error, its derivatives in phi1; friction ripple, its derivative"
+    function_graph.add_function("periodic_terms", doc, inputs, [0.0] * len(terms) if locked else terms)
+    amplitudes = [*error_amplitudes(drive), *friction.ripple_amplitudes(drive)]
     function_graph.add_function(
-        "kinematic_error", "inputs -> kinematic error, its derivatives in phi1", inputs, error_terms
+        "periodic_amplitudes",
+        "-> amplitudes of kinematic error and friction ripple",
+        [],
+        [0.0 * a if locked else a for a in amplitudes],
     )
-    amplitudes = [0.0 * a if locked else a for a in error_amplitudes(drive)]
-    function_graph.add_function("error_amplitudes", "-> amplitudes of the kinematic error", [], amplitudes)
     state = spring.SpringState(*make_symbols("state", 6))
-    loss, dry_friction_torque = make_symbols("x", 2)
+    loss, dry_friction_torque, ripple = make_symbols("x", 3)
     friction_arguments: Symbols
     if locked:
         curve_argument, stick_stiffness, friction_arguments = inputs[0], 0.0, [0.0] * 4
@@ -68,7 +77,7 @@ def _add_functions(function_graph: FunctionGraph, model: Model) -> None:
         curve_argument = spring.wind_up(drive, motion, state.phi_error)
         stick_stiffness = friction.sticking_stiffness(drive)
         tau = spring.transmitted_torque(drive, motion, state)
-        torque_limits = friction.friction_limits(drive, motion[1], tau, temperature, motion[0])
+        torque_limits = friction.friction_limits(drive, motion[1], tau, temperature, ripple)
         friction_arguments = [*motion[:2], *torque_limits]
         out = spring.motion_outputs(drive, motion, temperature, state, dry_friction_torque)
     doc = "inputs, kinematic error -> argument of the curve"
@@ -78,8 +87,8 @@ def _add_functions(function_graph: FunctionGraph, model: Model) -> None:
     function_graph.add_function(
         "sticking_stiffness", "-> stiffness of the friction sliders while all stick", [], [stick_stiffness]
     )
-    doc = "inputs, torques of midline and hysteresis, d(error)/d(phi1) -> phi1, w1, friction limits"
-    x = [*inputs, state.midline_torque, state.hysteresis_torque, state.phi_error_slope]
+    doc = "inputs, torques of midline and hysteresis, d(error)/d(phi1), ripple -> phi1, w1, friction limits"
+    x = [*inputs, state.midline_torque, state.hysteresis_torque, state.phi_error_slope, ripple]
     function_graph.add_function_with_derivative("friction_arguments", doc, x, friction_arguments)
     out["E_loss"] = loss
     y = [out[o.name] for o in model.outputs]
@@ -121,7 +130,7 @@ INTEGER_CONSTANT_NAMES: ModuleConstants = {
 def _make_definitions(function_graph: FunctionGraph, model: Model) -> CDefinitions:
     """Constants that the C code of the harmonic drive has in common with Python."""
     counts = {"ARGUMENT_IS_LOAD": int(_is_torque_input(model)), "DRIVE_STEPS": spring.MIN_TABLE_STEPS}
-    counts["N_HARMONICS"] = len(KINEMATIC_ERROR_HARMONICS)
+    counts["N_HARMONICS"] = len(KINEMATIC_ERROR_HARMONICS) + len(FRICTION_HARMONICS)
     sliders = define_array("STIFFNESS_SHARES", "N_STIFFNESS_SHARES", friction.SLIDER_STIFFNESS_SHARES)
     sliders |= define_array("LIMIT_SHARES", "N_LIMIT_SHARES", friction.SLIDER_LIMIT_SHARES)
     constants = define_constants(REAL_CONSTANT_NAMES, INTEGER_CONSTANT_NAMES) | CDefinitions(counts) | sliders

@@ -132,12 +132,12 @@ def format_function(
             operations[f"t{k}"] = (ca.OP_LE if code == ca.OP_DIV and simpler else code), names
     unused = [name for name in inputs if name not in used_inputs] + ([] if result_expressions else ["y"])
     body += [f"(void){name};" for name in unused]
-    used_lines = _drop_unused_lines(body)
+    used_lines = _join_sines_and_cosines(_call_in_conditions(_drop_unused_lines(body)))
     code_lines = used_lines if is_derivative else _replace_repeated_divisions(used_lines)
     if has_workspace:
         first = f"double *const w = y + {len(result_expressions)}; /* intermediate values */"
         code_lines = [first, *_move_to_workspace(code_lines)]
-    lines = "\n".join(f"    {line}" for line in code_lines)
+    lines = "\n".join(f"    {line}" for line in _call_pairs_once(code_lines))
     return f"/* {doc} */\nvoid {name}(const double *x, const double *c, double *y)\n{{\n{lines}\n}}\n"
 
 
@@ -221,6 +221,63 @@ def _drop_unused_lines(code_lines: Sequence[str]) -> list[str]:
         used_values.update(re.findall(r"\bt\d+\b", value))
         lines.append(line)
     return lines[::-1]
+
+
+_CALL_PATTERN = re.compile(r"const double (t\d+) = (portable_\w+\(.*\));")
+"""Pattern of a line of generated C that calls an elementary function: result, call."""
+_BRANCH_PATTERN = re.compile(r"(?<=[?:] )t\d+(?= :|;)")
+"""Pattern of a value that is a branch of a conditional expression in generated C."""
+
+
+def _call_in_conditions(code_lines: Sequence[str]) -> list[str]:
+    """Move elementary functions whose result only a branch of a conditional expression uses into this branch.
+
+    They are then evaluated only if the condition holds.
+    """
+    uses = Counter(name for line in code_lines for name in _VALUE_PATTERN.findall(line.partition(" = ")[2]))
+    branches = {name for line in code_lines for name in _BRANCH_PATTERN.findall(line) if uses[name] == 1}
+    lines, calls = list[str](), dict[str, str]()
+    for line in code_lines:
+        call = _CALL_PATTERN.fullmatch(line)
+        if call and call[1] in branches:
+            calls[call[1]] = call[2]
+        else:
+            lines.append(_BRANCH_PATTERN.sub(lambda match: calls.get(match[0], match[0]), line))
+    return lines
+
+
+_SINE_PATTERN = re.compile(r"(const double )?(\S+) = portable_(sin|cos)\((\S+)\);")
+"""Pattern of a line of generated C with a sine or cosine: declaration, result, function, angle."""
+
+
+def _join_sines_and_cosines(code_lines: Sequence[str]) -> list[str]:
+    """Move the cosine of an angle behind its sine, or the sine behind the cosine: the later line is moved."""
+    matches = [_SINE_PATTERN.fullmatch(line) for line in code_lines]
+    lines_by_angle: dict[str, list[str]] = {}
+    for line, match in zip(code_lines, matches, strict=True):
+        if match:
+            lines_by_angle.setdefault(match[4], []).append(line)
+    lines = list[str]()
+    for line, match in zip(code_lines, matches, strict=True):
+        lines += lines_by_angle.pop(match[4], []) if match else [line]
+    return lines
+
+
+def _call_pairs_once(code_lines: Sequence[str]) -> list[str]:
+    """Replace adjacent lines with sine and cosine of an angle by one call for both."""
+    lines, previous = list[str](), None
+    for line in code_lines:
+        match = _SINE_PATTERN.fullmatch(line)
+        if match and previous and match[4] == previous[4]:
+            sine, cosine = (previous, match) if match[3] == "cos" else (match, previous)
+            declarations = [f"double {cosine[2]};"] if cosine[1] else []
+            call = f"{sine[1] or ''}{sine[2]} = portable_sin_cos({sine[4]}, &{cosine[2]});"
+            lines[-1:] = [*declarations, call]
+            previous = None
+        else:
+            lines.append(line)
+            previous = match
+    return lines
 
 
 _DIVISION_PATTERN = re.compile(r"const double (t\d+) = (\S+) / (t\d+|x\[\d+\]);")

@@ -20,7 +20,7 @@ from matplotlib.figure import Figure
 from oracles import robot_log
 from oracles.robot_log import CASES, TRUE_VALUES, fit_log
 
-from jointfmu.joints.harmonic_drive.friction import friction_limits, viscous_torque
+from jointfmu.joints.harmonic_drive.friction import friction_limits, friction_ripple, viscous_torque
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import format_parameter_file, load_parameter_file
 
@@ -525,7 +525,8 @@ def rippled_log(ratio, **ripple):
     drive = size_32_file().with_values(SENSOR | ripple | {"ratio": abs(ratio)}, "user", "made").values
     q, dq = 0.3 * log_columns["q"], 0.3 * log_columns["dq"]
     load = 2.5 * np.gradient(dq, 0.01) + 110.0 * np.cos(q)
-    positive, negative = friction_limits(drive, abs(ratio) * dq, -load, phi1=ratio * q)
+    ripple_torque, _ = friction_ripple(drive, ratio * q)
+    positive, negative = friction_limits(drive, abs(ratio) * dq, -load, ripple=ripple_torque)
     torque = np.where(dq > 0.0, positive, -negative) + viscous_torque(drive, abs(ratio) * dq)
     current = (torque + load / abs(ratio) + ROTOR * abs(ratio) * np.gradient(dq, 0.01)) / CONSTANT
     return {"time": log_columns["time"], "q": q, "dq": dq, "i": current + 0.02 * rng.standard_normal(q.size)}

@@ -14,6 +14,7 @@
  * MIN_TOLERANCE. */
 #define MIN_TOLERANCE 1e-10
 #define NEWTON_TOLERANCE_RATIO 1e-2    /* residual correction of Newton's method over the tolerance */
+#define HISTORY_TOLERANCE_RATIO 10.0   /* position of the history at the end of a half step, over the tolerance */
 #define MIN_SPEED_RATIO 1e-6           /* smallest `speed_scale` over the nominal speed */
 #define MIN_STEP_RATIO 1e-9            /* smallest step over the communication step */
 #define MAX_STEPS 100000               /* attempts in one communication step */
@@ -190,6 +191,12 @@ static void predict_accelerations(const double known[3][N_BODIES], double middle
     }
 }
 
+/* Last correction of an acceleration, as a change of the speed over its scale. */
+static double correction_size(const StepWork *w, double h, size_t i)
+{
+    return h * fabs(w->residual[i]) / w->speed_scale[i % N_BODIES];
+}
+
 /* Size of a change of the positions in the norm of the tolerance: as a speed of the free vibration over its scale. */
 static double position_size(const StepWork *w, size_t body, double change)
 {
@@ -209,7 +216,7 @@ static double end_correction_size(const StepWork *w, double h)
 
 /* Compute a half step by Newton's method: positions, speeds and accelerations `to` at its end, and the history there.
  * Tangents of another step are reused while the corrections decrease fast enough. The history is that of the last
- * evaluated positions, from which the result differs by less than the tolerance; such differences do not add up, as
+ * evaluated positions, see HISTORY_TOLERANCE_RATIO; the differences to the result do not add up over the steps, because
  * the history has the positions themselves. false: no convergence, or a joint refuses. */
 static bool solve_step(Instance *m, const TrialStep *s, double *to, double *history_end)
 {
@@ -237,17 +244,16 @@ static bool solve_step(Instance *m, const TrialStep *s, double *to, double *hist
         solve(w);
         double size = 0.0;
         for (size_t i = 0; i < N_STATES; i++) {
-            const double relative = s->size * fabs(w->residual[i]) / w->speed_scale[i % N_BODIES];
-            if (!(relative < INFINITY))
-                return false;
             k[i] += w->residual[i];
-            w->largest_correction = relative > size ? i : w->largest_correction;
-            size = fmax(size, relative);
+            const double relative = correction_size(w, s->size, i);
+            size = relative <= size ? size : relative; /* also if it is not a number */
         }
+        if (!(size < INFINITY))
+            return false;
         if (n > 0)
             w->correction_ratio = size / previous;
         if (size * fmin(w->correction_ratio, 1.0) <= NEWTON_TOLERANCE_RATIO * w->tolerance) {
-            if (end_correction_size(w, s->size) > w->tolerance && !evaluate_stage(m, s, END, history_end))
+            if (end_correction_size(w, s->size) > HISTORY_TOLERANCE_RATIO * w->tolerance && !evaluate_stage(m, s, END, history_end))
                 return false;
             set_stage_values(m, s, END);
             memcpy(to, w->stage_values[END] + X, N_STATES * sizeof *to);
@@ -295,11 +301,16 @@ static Status log_step_error(const Instance *m, double time, double size)
     const StepWork *w = &m->joint->work;
     Text text;
     text_clear(&text);
-    if (w->refusal.length)
+    if (w->refusal.length) {
         text_append(&text, w->refusal.line);
-    else
-        text_append_format(&text, "Newton's method still changes %s by %.3g",
-                           variables[A + w->largest_correction % N_BODIES].name, w->residual[w->largest_correction]);
+    } else {
+        size_t largest = 0;
+        for (size_t i = 1; i < N_STATES; i++)
+            if (correction_size(w, size, i) > correction_size(w, size, largest))
+                largest = i;
+        text_append_format(&text, "Newton's method still changes %s by %.3g", variables[A + largest % N_BODIES].name,
+                           w->residual[largest]);
+    }
     return instance_log_error(m, "the step",
                               "the motion cannot be followed at %.10g s with steps of %.3g s: %s; expected inputs and "
                               "parameters with which a motion is possible",
@@ -345,9 +356,8 @@ Status instance_integrate(Instance *m, double size)
     memcpy(middle_history, history, sizeof w->history[0]);
     for (int attempts = 0; size - elapsed > 1e-12 * size; attempts++) {
         const double time = state->values[0] + elapsed;
-        const bool is_last = next >= (1.0 - 1e-6) * (size - elapsed);
-        double h = limit_to_event(m, time, is_last ? size - elapsed : fmin(next, 0.5 * (size - elapsed)));
-        const bool is_shortened = is_last || h < next;
+        const double remaining = size - elapsed, step_count = ceil((1.0 - 1e-6) * remaining / next);
+        const double h = limit_to_event(m, time, remaining / step_count);
         if (attempts == MAX_STEPS) {
             text_clear(&w->refusal);
             text_append_format(&w->refusal, "more than %g of them are needed", (double)MAX_STEPS);
@@ -387,8 +397,7 @@ Status instance_integrate(Instance *m, double size)
         memmove(w->nodes[0], w->nodes[2], 3 * sizeof w->nodes[0]);
         swap_rows(&from, &end);
         swap_rows(&history, &end_history);
-        const double grown_size = h * fmin(fmax(factor, 0.2), MAX_STEP_GROWTH);
-        next = is_shortened ? fmax(next, grown_size) : grown_size;
+        next = factor < MAX_STEP_GROWTH ? h * fmax(factor, 0.2) : fmax(next, h * MAX_STEP_GROWTH);
     }
     memcpy(state->values + X, from, N_STATES * sizeof *from);
     set_end_history(m, from, middle_history, known_size, state->path.history[state->path.end_index]);

@@ -52,8 +52,7 @@ typedef struct {
     double nodes[5][N_BODIES];             /* accelerations at start, middle and end of both half steps */
     double history[3][N_HISTORY + 1];
     double times[N_TIME_EVENTS + 1];
-    size_t largest_correction; /* index of the acceleration with the largest last correction */
-    Text refusal;              /* reason why a joint refused the last evaluation, or empty */
+    Text refusal; /* reason why a joint refused the last evaluation, or empty */
 } StepWork;
 
 struct Joint {

@@ -68,14 +68,14 @@ def friction_limits(
     w1: Number,
     tau: Number,
     temperature: Number = REFERENCE_TEMPERATURE,
-    phi1: Number | None = None,
+    ripple: Number = 0.0,
 ) -> tuple[Number, Number]:
     """Friction limits M (...) [N.m] of positive and of negative friction.
 
     w1          : (...) [rad/s] speed of the wave generator
     tau         : (...) [N.m] torque at the output; tau/ratio is its torque on the wave generator
     temperature : (...) [K]
-    phi1        : (...) [rad] angle of the wave generator; None: mean over a turn
+    ripple      : (...) [N.m] periodic part, see `friction_ripple`; 0: mean over a turn
 
     Two functions of the sign of tau are replaced by smooth ones, with t = PLAY_OVER_RATED_TORQUE
     rated_torque: |tau| is tau tanh(tau/t), and the weight of load_loss_back is (1 +- tanh(tau/t))/2.
@@ -86,21 +86,26 @@ def friction_limits(
     difference = drive.effective_load_loss_back - drive.load_loss
     back = 0.5 * (1.0 + load_sign * drive.ratio / np.abs(drive.ratio))
     sides = (drive.load_loss + difference * weight for weight in (back, 1.0 - back))
-    constant = drive.friction_coulomb + stribeck
-    if phi1 is not None:
-        constant = constant + friction_ripple(drive, phi1)
+    constant = drive.friction_coulomb + stribeck + ripple
     factor = dry_friction_factor(drive, temperature)
     positive, negative = (factor * (constant + loss * size) for loss in sides)
     return positive, negative
 
 
-def friction_ripple(drive: DriveParameters, phi1: Number) -> Number:
-    """Periodic part (...) [N.m] of the dry friction at angles phi1 (...) [rad] of the wave generator."""
-    ripple = 0.0
-    for n, (sine, cosine) in compute_harmonics(phi1, FRICTION_HARMONICS).items():
-        amplitude, phase = getattr(drive, f"friction_{n}"), getattr(drive, f"friction_{n}_phase")
+def ripple_amplitudes(drive: DriveParameters) -> list[Number]:
+    """Amplitudes [N.m] of the periodic part of the dry friction, one for each of FRICTION_HARMONICS."""
+    return [getattr(drive, f"friction_{n}") for n in FRICTION_HARMONICS]
+
+
+def friction_ripple(drive: DriveParameters, phi1: Number) -> tuple[Number, Number]:
+    """Periodic part (...) [N.m] of the dry friction at angles phi1 (...) [rad]; its derivative [N.m/rad]."""
+    ripple = slope = 0.0
+    harmonics = compute_harmonics(phi1, FRICTION_HARMONICS)
+    for (n, (sine, cosine)), amplitude in zip(harmonics.items(), ripple_amplitudes(drive), strict=True):
+        phase = getattr(drive, f"friction_{n}_phase")
         ripple = ripple + amplitude * (sine * np.cos(phase) + cosine * np.sin(phase))
-    return ripple
+        slope = slope + n * amplitude * (cosine * np.cos(phase) - sine * np.sin(phase))
+    return ripple, slope
 
 
 def viscous_torque(drive: DriveParameters, w1: Number, temperature: Number = REFERENCE_TEMPERATURE) -> Number:

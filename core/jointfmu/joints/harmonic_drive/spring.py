@@ -11,7 +11,13 @@ from ...mechanics.stable_steps import largest_stable_steps, mobility
 from ...quantity import Array, Number, check_limits
 from . import friction, hysteresis
 from .drive import DriveParameters, kinematic_error
-from .friction import REFERENCE_TEMPERATURE, FrictionSliders, friction_limits, viscous_torque
+from .friction import (
+    REFERENCE_TEMPERATURE,
+    FrictionSliders,
+    friction_limits,
+    friction_ripple,
+    viscous_torque,
+)
 from .hysteresis import HysteresisSliders
 from .law import ContactPairDriveParameters, stiffness_with_play
 from .prescribed_midline import PrescribedDriveParameters
@@ -128,9 +134,11 @@ class HarmonicDriveSpring:
         hysteresis_update = self.hysteresis.advance(hysteresis_history, phi)
         load = np.copysign(load, phi)
         state = SpringState(phi, load, stiffness, hysteresis_update.traction, error, slope)
-        friction_limits_ = friction_limits(
-            self.joint, motion[1], transmitted_torque(self.joint, motion, state), kelvin, motion[0]
+        tau, ripple = (
+            transmitted_torque(self.joint, motion, state),
+            friction_ripple(self.joint, motion[0])[0],
         )
+        friction_limits_ = friction_limits(self.joint, motion[1], tau, kelvin, ripple)
         friction_update = self.friction.advance(friction_history, motion[0], motion[1], friction_limits_)
         loss = (
             hysteresis.HISTORY_LAYOUT.split(hysteresis_history)["loss"]

@@ -242,24 +242,28 @@ static inline double cosine_near_zero(DoubleDouble y)
     return first + (((1.0 - first) - half) + (z * z * sum - y.high * y.low));
 }
 
-/* sin(x + quarters pi/2) */
-static double shifted_sine(double x, int quarters)
+double portable_sin_cos(double x, double *cosine)
 {
     double k;
     if (!(fabs(x) < INFINITY))
-        return NAN;
+        return *cosine = NAN;
     const DoubleDouble y = reduce_to_quarter_turn(x, &k);
-    const int quarter = ((int)(k - 4.0 * floor(0.25 * k)) + quarters) & 3;
-    const double value = quarter & 1 ? cosine_near_zero(y) : sine_near_zero(y);
-    return quarter & 2 ? -value : value;
+    const int quarter = (int)(k - 4.0 * floor(0.25 * k));
+    const double a = sine_near_zero(y), b = cosine_near_zero(y);
+    const double sine = quarter & 1 ? b : a, other = quarter & 1 ? a : b;
+    *cosine = (quarter + 1) & 2 ? -other : other;
+    return quarter & 2 ? -sine : sine;
 }
 
 double portable_sin(double x)
 {
-    return shifted_sine(x, 0);
+    double cosine;
+    return portable_sin_cos(x, &cosine);
 }
 
 double portable_cos(double x)
 {
-    return shifted_sine(x, 1);
+    double cosine;
+    portable_sin_cos(x, &cosine);
+    return cosine;
 }

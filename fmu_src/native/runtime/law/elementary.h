@@ -16,5 +16,6 @@ double portable_asinh(double x);
 double portable_erf(double x);
 double portable_sin(double x);
 double portable_cos(double x);
+double portable_sin_cos(double x, double *cosine); /* returns the sine */
 
 #endif
