@@ -248,7 +248,7 @@ def print_throughput(hysteresis: float | None, quick: bool) -> None:
 DURATION, COMMUNICATION_STEP, PAYLOAD = 2.0, 1e-3, 3.0
 """Simulated time [s], communication step of the FMU [s], mass at the tip [kg]."""
 ROBOT_EFFECTS = {"hysteresis_loss": 2.9e-4, "lost_motion": 2.9e-4, "friction_stribeck": 0.01, "error_2": 1e-4}
-"""Parameters of all drives beyond those of the catalogue, which has friction and load loss."""
+"""Parameters of all drives that the catalogue does not have; it has friction and load loss."""
 MIN_REAL_TIME_RATIO, MAX_START_TIME = 20.0, 5e-3
 """Targets: simulated time over processor time, and time to initialize [s]."""
 

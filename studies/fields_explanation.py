@@ -275,9 +275,7 @@ SWING_PRELOAD, SWING, CYCLES = 9e3, 0.3, (1, 2, 20, 100)
 """Oscillating normal load: preload [N], relative decrease of the normal force [1], number of cycles."""
 SLIDER_COUNTS = ((22, 10, 7), (40, 5, 3), (60, 3, 2))
 """Numbers of patches, and of slider heights below and above the reference height, with about equal total
-numbers of sliders. The first row is that of the joint.
-
-The first row is the one of the joint."""
+numbers of sliders. The joint has the first row."""
 FORCE_POINTS = 20
 """Displacements over gross slip at which the force is compared."""
 

@@ -54,7 +54,7 @@ MODEL = MODELS["HarmonicDriveSpring"]
 ARCMIN = math.pi / 10800.0
 RPM = math.pi / 30.0
 USUAL_LOAD_LOSS = 0.05
-"""Usual parameter load_loss [1]: that of four drives, from starting and back-driving torque."""
+"""Usual parameter load_loss [1]: from four drives, by starting and back-driving torque."""
 LINES = ("K1", "K2", "K3", "T1", "T2")
 
 

@@ -23,7 +23,7 @@ from jointfmu.progress import track_progress
 POINTS, LOADS = 128, (0.003, 0.01, 0.03, 0.1)
 """Points along a side, and pressures of the boundary elements [E* h']."""
 LIGHT_POINTS, LIGHT_LOADS, LIGHT_SCALE = 512, (0.0003, 0.001, 0.003), 4
-"""The same for light load, where waves are shorter by the scale: 16 times as many hills."""
+"""Points and pressures for light load, and factor by which its waves are shorter: 16 times as many hills."""
 FITTED, PROVED = (1, 3), (0, 2)
 """Seeds of the fit, and of the proof."""
 FACTORS = (2.0, 3.0, 4.0, 5.0, 6.0)

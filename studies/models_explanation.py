@@ -34,13 +34,13 @@ from oracles.joint_elements import (
 Array = NDArray[np.float64]
 POLE_COUNT = 200
 PATHS = ((0.7, 48), (7.0, 48), (7.0, 16), (7.0, 8))
-"""Closed paths: (motion over that of the largest force in a linear joint [1], number of steps)."""
+"""Closed paths: (motion over motion at the largest force in a linear joint [1], number of steps)."""
 MIN_STEPS = 48
 """Smallest number of steps for which the trapezoidal rule gives the work."""
 ATTACHMENTS = ("faces", "heads", "edge")
 MOTIONS = ("s_rel_x", "s_rel_y", "s_rel_z", "theta_x", "theta_y", "theta_z")
 LEVELS = (0.1, 0.3, 0.5, 0.8, 1.0, 1.3)
-"""Motions over the one at which the linear joint reaches the friction limit or loses the clamping force [1].
+"""Motions over motion at which the linear joint reaches the friction limit or loses the clamping force [1].
 """
 
 plate_joint = cache(PlateJoint.of)

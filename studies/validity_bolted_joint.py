@@ -275,7 +275,7 @@ def print_points(options: argparse.Namespace) -> None:
 # calculix
 
 LAP_LENGTH = 4.0
-"""Length of the lap over that of shear lag [1]."""
+"""Length of the lap over length of shear lag [1]."""
 MAX_MOTION, LAP_STEPS = 1.0, 6
 """Largest motion over that at which the linear lap reaches the friction limit [1]; steps from one end to the
 other."""

@@ -20,7 +20,7 @@ OPEN_END_DISTANCE_OVER_WIDTH = 1e-6
 BISECTION_STEPS = 5
 """Number of bisection steps [1] for a boundary value that the joint accepts."""
 INWARD_SHIFT_OVER_DISTANCE = 0.02
-"""Shift from the last accepted value towards that of the file, over their distance [1]: round-off margin."""
+"""Shift from the last accepted value to the value of the file, over their distance [1]: round-off margin."""
 
 
 def find_boundary_values(

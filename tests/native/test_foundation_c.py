@@ -19,7 +19,7 @@ FOUNDATIONS, APPROACHES = 60, 40
 ROUND_OFF = 1e-12
 """Error of a property over the size of the terms that cancel in it [1]."""
 SLOPE_ROUND_OFF = 1e-10
-"""The same for the stiffness slope, a second derivative of polynomials, over its largest value [1]."""
+"""Error of the stiffness slope, a second derivative of polynomials, over its largest value [1]."""
 CALLER = """
 #include "foundation.c"
 __attribute__((visibility("default"))) int read_properties(int n, const double (*nodes)[5], const double *law,

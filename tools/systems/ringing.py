@@ -26,7 +26,7 @@ PERIOD_COUNT = 25
 RESONANCE_TOLERANCE = 5e-3
 """Relative tolerance [1] of the spectral peak frequency against sqrt(K/J)."""
 DAMPING_TOLERANCE = 1e-2
-"""Relative tolerance [1] of the damping ratio by the decrement against that of the joint."""
+"""Relative tolerance [1] of the damping ratio by the decrement against the ratio of the joint."""
 FREQUENCY_CURVE_POINT_COUNT = 41
 """Number of points of a curve over the load [1]."""
 MIN_INITIAL_OVER_REST_DEFLECTION = 1e-10

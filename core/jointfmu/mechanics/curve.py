@@ -251,7 +251,7 @@ def _join_curve_pieces(curve_pieces: list[tuple[Array, Array, Array, Array]]) ->
 
 
 CLOSING_END_OVER_PLASTIC_SPOT_AREA = 20.0
-"""Area of the largest spot over that of the largest plastic spot [1] at the end of the closing."""
+"""Area of the largest spot over area of the largest plastic spot [1] at the end of the closing."""
 
 
 def closing_pressure(

@@ -138,7 +138,7 @@ def sum_slider_forces(slider_forces: Array) -> Array:
 
 
 FULL_STICK_OVER_GROSS_SLIP_DISPLACEMENT = 1e-3
-"""Displacement over that of gross slip [1] below which a foundation counts as in full stick."""
+"""Displacement over the displacement of gross slip [1] below which a foundation counts as in full stick."""
 
 
 @dataclass(frozen=True, slots=True)

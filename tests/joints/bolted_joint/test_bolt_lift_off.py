@@ -22,7 +22,7 @@ from jointfmu.parameters import load_default, load_parameter_file
 
 PRELOAD, EMBEDDING = 15e3, 800.0
 STIFFNESS = 1.28e10
-"""Stiffness of a bolt [N/m]: fifty times that of an M8, so that it lifts off while the contact is still
+"""Stiffness of a bolt [N/m]: fifty times as much as an M8, so that it lifts off while the contact is still
 closed."""
 STILL = (0.0,) * 6
 FORCES = ("f_x", "f_y", "f_z", "m_x", "m_y", "m_z")

@@ -56,7 +56,7 @@ MOVED = {
     "load_loss_back": 0.3,
     "bearing.sigma_y": 0.8 * load_default("harmonic_drive").values.flexspline.sigma_y,
 }
-"""Changed parameters; those of the softer body act."""
+"""Changed parameters; parameters of the softer body have an effect."""
 ELASTIC = frozenset({"mu", "surface.s_min", "flexspline.sigma_y", "bearing.sigma_y"})
 """Parameter set with elastic spots only: spot size and strength limit the validity. The traction ratio is
 relative to mu."""

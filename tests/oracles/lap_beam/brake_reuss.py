@@ -15,7 +15,7 @@ FRICTION_COEFFICIENT = 0.15
 AMPLITUDES = np.geomspace(1e-7, 1e-4, 13)
 """Modal amplitudes q [m kg^0.5] of the linear beam under the loads."""
 GLUED_STIFFNESS = 1e17
-"""Stiffness [N/m3] of a glued lap: that of 2 um of steel."""
+"""Stiffness [N/m3] of a glued lap: as of 2 um of steel."""
 
 
 def data():

@@ -24,7 +24,7 @@ _COMPONENT_PACKAGE = "JointStiffness.Components"
 _NOMINAL_STATE_VALUES = {"phi": "1e-3", "w": "0.1", "s": "1e-6", "v": "1e-3"}
 """{state: nominal value [SI]} of bodies."""
 _WEIGHT_PARAMETERS = ("m", "l")
-"""Parameters of a rotational inertia that are those of a component `LinkWeight`."""
+"""Parameters of a rotational inertia that become parameters of a component `LinkWeight`."""
 _COLUMN_SPACING, _ROW_SPACING = 30, 30
 """Distances on the diagram: between columns of components, and between rows."""
 

@@ -42,8 +42,8 @@ STOP_TIME = 0.2
 COMMUNICATION_STEP = 1e-3
 """Communication step [s] of the default experiment."""
 REFERENCE_INTERVAL = 1e-4
-"""Interval [s] of the references of the proof: short, because the friction of each load step is that of a
-straight path."""
+"""Interval [s] of the references of the proof: short, because the friction of each load step is
+calculated on a straight path."""
 RESERVED_NAMES = ("payload", "tip")
 """First parts of names of variables, which no joint may have."""
 _XYZ = ("x", "y", "z")

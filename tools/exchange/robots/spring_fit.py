@@ -16,7 +16,7 @@ YIELD_OVER_MAX_WIND_UPS = np.geomspace(0.02, 0.4, 6)
 All springs yield within the range of the fit, so no spring adds hysteresis beyond it.
 """
 MIN_LOOP_OVER_BOX_AREA = 1e-6
-"""Area of the hysteresis loop over that of its bounding box [1], below which it counts as zero.
+"""Area of the hysteresis loop over area of its bounding box [1], below which it counts as zero.
 
 Round-off of the drive's inversion leaves about this area."""
 

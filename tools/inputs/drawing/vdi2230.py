@@ -24,7 +24,7 @@ DEFAULT_FRICTION, FRICTION_INTERVAL = 0.12, (0.08, 0.16)
 """Coefficient of friction [1] in the thread and under the head if none is known, and its interval: Table A5,
 friction class B."""
 ROUNDING_TOLERANCE = 1e-6
-"""Relative excess of Rz over that of a table row [1] that is ignored: 10 um belong to the row of 10 um."""
+"""Relative excess of Rz over Rz of a table row [1] that is ignored: 10 um belong to the row of 10 um."""
 FRICTION_SOURCE = "VDI 2230, Table A5, friction class B"
 """Source text of the coefficients of friction in thread and under head."""
 MAX_UTILISATION_ERROR = 0.02

@@ -33,7 +33,7 @@ MIN_REVERSAL_OVER_TORQUE_RANGE = 0.1
 CENTRAL_TORQUE_RANGE_FRACTION = 0.25
 """Central fraction of the torque range [1], in which friction is fully reversed on both branches."""
 MIN_BRANCH_OVER_RECORD_TORQUE_RANGE = 0.9
-"""Torque range of a branch over that of the whole record [1], from which the branch covers the full range."""
+"""Torque range of a branch over that of the record [1], from which the branch covers the full range."""
 MAX_KNOTS, POINTS_PER_KNOT = 41, 20
 """Maximum number of knots of the piecewise linear curves, and number of samples for each knot."""
 MAX_BACKBONE_POINTS = 400

@@ -31,9 +31,9 @@ RELATIVE_ROUNDING = 1e-9
 """Relative round-off [1] of data without noise: of areas over range of force times range of motion, of
 motions over their range."""
 MIN_COMMON_OVER_LONGER_MOTION_RANGE = 0.9
-"""Motion range common to two branches over that of the longer branch [1], from which they close a loop."""
+"""Motion range common to two branches over range of the longer branch [1], from which they close a loop."""
 RISING_FORCE_FRACTION = 0.9
-"""Force change since the turning point over that of the whole branch [1], up to which a branch counts as
+"""Force change since the turning point over change of the whole branch [1], up to which a branch counts as
 rising. Beyond it a slipped branch is flat."""
 FLAT_FRACTION, MAX_FLAT_RISE = 0.3, 0.05
 """Last part of a branch over its range of motion [1], and rise of the force over this part, relative to the
@@ -43,8 +43,8 @@ MIN_FLAT_SAMPLES = 3
 BEARING_INTERVALS = 12
 """Number of equal parts of a branch that show whether its stiffness rises again."""
 MIN_BEARING_RISE, MIN_BEARING_SLOPE_RATIO = 0.2, 3.0
-"""Rise of the force after the softest part over that of the branch [1], and stiffness there over that of the
-softest part [1], from which a joint bears after slip."""
+"""Rise of the force after the softest part over rise of the branch [1], and stiffness there over stiffness
+of the softest part [1], from which a joint bears after slip."""
 MIN_BEARING_NOISE = 8.0
 """Rise of a branch's stiffness over its standard deviation [1], from which a joint bears after slip."""
 MIN_RISING_SAMPLES = 5

@@ -127,7 +127,7 @@ RMS_HEIGHT_PARAMETER = "h"
 """Name of the parameter rms roughness height [m], in laws that have it."""
 
 MAX_LAW_OVER_CONSTANT_RESIDUAL = 0.95
-"""Residual of the law over that of a constant, for held-out data [1], above which a fit is rejected."""
+"""Residual of the law over residual of a constant, for held-out data [1], above which a fit is rejected."""
 
 
 @dataclass(frozen=True, slots=True)

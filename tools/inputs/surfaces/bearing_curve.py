@@ -33,7 +33,7 @@ SCAN_PARTS = 4
 MIN_SKEWNESS = 1e-3
 """Skewness [1] below which heights are Gaussian."""
 TABLE_FACTOR_RANGE = (1.0 / 1.5, 1.5)
-"""Smallest and largest stiffness of single surfaces, over that of the law [1]."""
+"""Smallest and largest stiffness of single surfaces, over stiffness of the law [1]."""
 RANDOM_PAIRS = 2**18
 """Number of random pairs of points from two surfaces, for the heights of their gap [1]."""
 

@@ -207,7 +207,7 @@ FORMAT_SIGNATURES = (
     *(b"Zeta-Instruments", b"KPK", b"OmniSurf3D", b"AliconaImaging", b"fileformat = bcr", b"f\0i\0l\0e"),
     *(b"\xff\xfef\0i", b"\xfe\xff\0f\0i", b"\x88\x1b\x03", b"GWY", b"FRTM_GLIDERV", b"WSxM file copyright"),
 )
-"""Signatures (first bytes) of the known formats; that of Wyko OPD begins at the third byte."""
+"""Signatures (first bytes) of the known formats; the signature of Wyko OPD begins at the third byte."""
 _NUMBER_PATTERN = re.compile(rb"\d+")
 """Pattern of a number in the bytes of a file."""
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 TEXTURE_THRESHOLD = 0.3
-"""Mean square of the average line over that of the single lines of a map [1], above which it is textured."""
+"""Mean square of the average line of a map over that of single lines [1], above which it is textured."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -49,7 +49,7 @@ RATIOS_FROM_80 = ("80", "100", "120", "160")
 """Ratios of the drives in a row for "ratio 80 and more", if any series has a torque for this size and
 ratio."""
 ACTUATOR_SERIES = ("CHA", "FHA", "RSF")
-"""Series with a built-in motor; their published torques are not those of the gear alone."""
+"""Series with a built-in motor; their published torques are not torques of the gear alone."""
 HIGH_TORQUE_SERIES = ("CSG", "SHG")
 """Series with higher torques than the others, by the factor HIGH_TORQUE_OVER_STANDARD_SERIES."""
 TABLE_END_OVER_RATED_TORQUE = 4.0
@@ -57,7 +57,7 @@ TABLE_END_OVER_RATED_TORQUE = 4.0
 
 Catalogue drives have about this ratio."""
 HIGH_TORQUE_OVER_STANDARD_SERIES = 1.3
-"""Torque of a CSG drive over that of a CSF drive of the same size and ratio [1]."""
+"""Torque of a CSG drive over torque of a CSF drive of the same size and ratio [1]."""
 SERIES_WITH_PUBLISHED_TORQUES = ("CSG", "SHG", "HFUC", "HFUS")
 """Series with published torques, in the order in which they serve as estimates for other series."""
 TorqueTable: TypeAlias = Mapping[tuple[str, str, str], Mapping[str, str]]

@@ -49,7 +49,7 @@ steps of the simulation change. Larger ones shift an oscillation by more than a 
 NOISE_TOLERANCE, MAX_NOISE_UPDATES = 0.02, 5
 """Relative change of the noise of the columns at which the fit ends, largest number of repeats."""
 MIN_NOISE_OVER_SCATTER = 1e-6
-"""Smallest standard deviation of a column over that of its values [1]: for a record without noise."""
+"""Smallest noise of a column over standard deviation of its values [1], for a record without noise."""
 MAX_START_OVER_COLUMN_RANGE = 0.1
 """First measured value of a state over the range of its column [1], up to which the state starts at zero."""
 MAX_HOLD_OUT = 0.9

@@ -30,10 +30,10 @@ from ..powerlaw import PowerTerm, SpotDistribution, exp_integral, integrate_gaus
 MAX_TABLE_POINTS = 32
 """Largest number of points of a table [1], limited by the compiled code of the FMUs."""
 MAX_ONSET_EXPONENT = 1.0
-"""Largest exponent n of K ~ p^n [1] below the first point: that of the contact of many spots. With a larger
+"""Largest exponent n of K ~ p^n [1] below the first point, as for a contact of many spots. With a larger
 one, the approach from first contact to the first point would depend on the pressure of first contact."""
 ONSET_PRESSURE_OVER_FIRST_POINT = 1e-6
-"""Pressure at which the stiffness begins, over that of the first point [1]."""
+"""Pressure at which the stiffness begins, over the pressure of the first point [1]."""
 MIN_TRACTION_RATIO = 1e-7
 """Traction ratio [1] below which the loss factor is proportional to it, within round-off."""
 MAX_STIFFNESS_EXPONENT = 5.0

@@ -14,7 +14,7 @@ COMPLIANCE_COMPONENTS = ("interface", "members", "bolts")
 MIN_INTERFACE_SHARE = 0.1
 """Share of the interface in the compliance of the joint [1] from which its law matters."""
 MIN_BOLT_OVER_JOINT_STIFFNESS = 1e-9
-"""Stiffness of the bolts over that of the joint [1] that counts as zero: round-off of the bolt positions."""
+"""Bolt stiffness over joint stiffness [1] that counts as zero: round-off of the bolt positions."""
 
 
 def condense_stiffness(tangent_stiffness: Array) -> Array:

@@ -32,7 +32,7 @@ MIN_CORNER_HALF_WIDTH_OVER_WIND_UP = 1e-6
 
 The angle at a corner is within 1e-7 of the lines."""
 MAX_STIFFNESS = 1e12
-"""Largest stiffness of a drive [N.m/rad]: more than that of a solid steel shaft of its size."""
+"""Largest stiffness of a drive [N.m/rad]: more than a solid steel shaft of its size has."""
 MAX_TABLE_POINTS = 1000
 """Largest number of points of a measured table."""
 MIN_END_OVER_MEAN_STIFFNESS, MAX_END_OVER_MEAN_STIFFNESS = 1.0 / 3.0, 3.0

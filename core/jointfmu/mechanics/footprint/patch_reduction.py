@@ -47,7 +47,7 @@ MAX_OPENING_OVER_APPROACH, MAX_TILT_OPENING_OVER_APPROACH = 0.1, 0.2
 MAX_MOMENT_OVER_OPENING_MOMENT = 2.5
 """Largest moment of the cases, over the moment that opens part of the contact [1].
 
-The latter is that of `largest_moment_factor`."""
+The latter is computed by `largest_moment_factor`."""
 MIN_MOTION_LENGTH, MAX_MOTION_LENGTH = 0.05, 3.0
 """Shortest and longest motion [1], over the motion at which a node at the radius of gyration has mobilised
 all but UNMOBILISED_FRICTION_SHARE of its friction."""
@@ -83,8 +83,8 @@ SLIDER_CIRCLE_OVER_GYRATION_RADIUS = 0.9
 """Radius of the circle over the radius of gyration of the friction of a patch [1]: in a rotation about a pole
 inside it, a disc acts like a smaller ring."""
 NODE_DIVISION_PRESSURE_OFFSET, LLOYD_ITERATIONS = 0.1, 5
-"""Pressure over mean pressure [1] that is added to that of each node for the division among patches, and
-number of iterations of the division [1]."""
+"""Pressure over mean pressure [1] that is added to the pressure of each node for the division among patches,
+and number of iterations of the division [1]."""
 SMALLEST_FLOAT = float(np.finfo(float).tiny)
 """Smallest normal float: replaces 0 in divisions."""
 _LOW_DISCREPANCY_INCREMENTS = successive_powers(1.0 / 1.0969815577985598, 7)

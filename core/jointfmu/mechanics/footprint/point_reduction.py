@@ -33,7 +33,7 @@ SAMPLED_STATE_COUNT = 80
 UNTILTED_STATE_SHARE = 0.4
 """Share of the states without normal displacement and tilt [1]."""
 DISPLACED_STATE_WEIGHT = 0.02
-"""Weight of the states with displacement and tilt, over that of the others [1]."""
+"""Weight of the states with displacement and tilt, over the weight of the others [1]."""
 MAX_OPENING_OVER_APPROACH, MAX_TILT_OPENING_OVER_APPROACH = 0.1, 0.1
 """Largest normal displacement, and largest opening by tilt at the edge, over the largest approach [1]."""
 MAX_LOST_FORCE_SHARE = 1e-4

@@ -61,7 +61,7 @@ FITTED_PARAMETERS: Mapping[str, tuple[str, ...]] = {
     "roughness": ("h",),
     "table": ("table.factor",),
 }
-"""{law: parameters to fit}: that of the stiffness level, and that of the exponent if the law has one."""
+"""{law: parameters to fit}: for the stiffness level, and for the exponent if the law has one."""
 START_VALUES: Mapping[str, tuple[float, ...]] = {
     "surface.D": (1.25, 1.42, 1.6),
     "surface.G": tuple(1.21e-8 * np.logspace(-3.0, 3.0, 7)),

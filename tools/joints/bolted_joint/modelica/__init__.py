@@ -32,8 +32,8 @@ DAMPING_TOLERANCE = 1e-3
 MAX_CONTACT_OVER_TIGHTENING_FORCE = 10.0
 """Total contact force at the end of the table, over the contact force at tightening [1]."""
 PRELOADED_SLIDER_PAIR_COUNT, FIRST_OVER_GROSS_SLIP_DISPLACEMENT = 12, 2e-3
-"""Number of slider pairs in contact at tightening, and slip displacement of the first pair over that of gross
-slip [1]. The slip displacements of the pairs form a geometric sequence."""
+"""Number of slider pairs in contact at tightening, and slip displacement of the first pair over displacement
+of gross slip [1]. The slip displacements of the pairs form a geometric sequence."""
 FULL_CONTACT_OVER_TIGHTENING_FORCES = (2.0, 5.0)
 """Normal forces over that at tightening [1] at which further pairs of sliders come into full contact.
 

@@ -34,7 +34,7 @@ THICKNESS_TOLERANCE = 1e-6
 MAX_GRIP_OVER_THREAD_DIAMETER = 50
 """Largest grip over the diameter of the thread [1]: a longer bolt is a tie rod."""
 MAX_HOLE_OVER_THREAD_DIAMETER = 3.0
-"""Largest diameter of the hole over that of the thread [1]."""
+"""Largest diameter of the hole over diameter of the thread [1]."""
 UNSTATED_RZ = 10e-6
 """Maximum height Rz [m] of faces whose roughness is not stated, for embedding: the usual one of Ra 1.6 um."""
 THREAD_DEPTH_OVER_DIAMETER = 1.0

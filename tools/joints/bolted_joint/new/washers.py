@@ -12,7 +12,7 @@ from ....inputs.drawing.tables import Thread, Washer, find_washer
 from . import STANDARD_WASHERS
 
 MAX_BEARING_OVER_THREAD_DIAMETER = 8.0
-"""Largest diameter of a bearing face over that of the thread [1]; washers of ISO 7094 have 4."""
+"""Largest diameter of a bearing face over diameter of the thread [1]; washers of ISO 7094 have 4."""
 MAX_WASHER_THICKNESS_OVER_THREAD_DIAMETER = 1.0
 """Largest thickness of a washer over the diameter of the thread [1]: a thicker one is a spacer."""
 

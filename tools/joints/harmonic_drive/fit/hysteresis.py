@@ -47,7 +47,7 @@ DEFAULT_START_VALUES = {HYSTERESIS_LOSS_NAME: RAD_PER_ARCMIN, HYSTERESIS_STIFFNE
 LOSS_START_VALUES = tuple(RAD_PER_ARCMIN * np.geomspace(0.03, 10.0, 7))
 """Further start values of the hysteresis loss [rad]."""
 HYSTERESIS_STIFFNESS_STARTS_OVER_DRIVE_STIFFNESS = (0.3, 1.0, 3.0, 10.0)
-"""Start values of the hysteresis stiffness over K_WTS at zero torque [1], besides that of the file."""
+"""Start values of the hysteresis stiffness over K_WTS at zero torque [1], besides the value in the file."""
 
 
 def make_law(drive: DriveParameters) -> HysteresisLaw:

@@ -22,8 +22,8 @@ GRAVITY_HARMONICS = 3
 """Harmonics of the joint angle in gravity: an arm has one, springs and cables add some."""
 MAX_MOTION_SHARE, MIN_GRAVITY_RESIDUAL = 0.5, 0.02
 """Share of the variance of the gravity column, beyond its function of the angle, that acceleration and sense
-of the motion explain [1], and its standard deviation over that of the column [1]: from both on the column is
-no gravity."""
+of the motion explain [1]; and standard deviation of the gravity column beyond its function of the angle, over
+standard deviation of the column [1]. From both on, the column is no gravity."""
 
 
 def check_repeated_logs(logs: Sequence[MeasuredLog]) -> None:
