@@ -281,6 +281,13 @@ def test_what_does_not_compile_is_named_in_one_line(text: str, part: str) -> Non
     assert part in str(raised.value)
 
 
+def test_every_processor_of_its_kind_can_run_it() -> None:
+    """The compiler may use AVX only in functions that `simd.h` selects when the FMU runs."""
+    text = '#ifdef __AVX__\n#error "code needs AVX"\n#endif\n'
+    platforms = [name for name in compiler.ZIG_TARGETS if name.startswith("x86_64")]
+    compiler.compile_libraries("Avx", SOURCES | {"avx.c": text}, ["good.c", "avx.c"], platforms)
+
+
 @pytest.mark.parametrize("package", ["ziglang", "casadi"])
 def test_a_missing_package_is_one_line_that_says_what_to_install(
     tmp_path: Path, package: str, enter: Enter

@@ -146,9 +146,7 @@ def _compiler_options(platform: str, library_name: str) -> tuple[str, ...]:
     """
     import ziglang
 
-    # Instruction scheduling for processors with AVX2; the code still runs on every x86_64.
-    tuned = ("-mtune=haswell",) if platform.startswith("x86_64") else ()
-    common = ("-target", ZIG_TARGETS[platform], *_LIBRARY_OPTIONS, *tuned)
+    common = ("-target", ZIG_TARGETS[platform], *_LIBRARY_OPTIONS)
     # Only libraries of the system: otherwise zig first compiles its own runtime, of which nothing is linked.
     # No unwind tables: no C++ exception passes through this C; only the Windows ABI requires them.
     unix = ("-nostdlib", "-lc", "-fno-asynchronous-unwind-tables", "-fno-unwind-tables")
