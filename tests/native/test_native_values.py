@@ -233,6 +233,21 @@ def test_input_derivatives_extrapolate_one_step(host: Host, name: str) -> None:
     assert instance.get() == other.get()
 
 
+def test_a_step_with_input_derivatives_starts_at_the_inputs(host: Host) -> None:
+    """Friction follows the path through the inputs that were set before the step, not straight to its end."""
+    moving, stepwise, straight = (host("BoltedJoint", "fmi2").start({"preload": 9e3}) for _ in range(3))
+    for instance in (moving, stepwise):
+        instance.set_values({"s_rel_x": 1e-6})
+    slope(moving, s_rel_x=-2e-6)
+    stepwise.step()
+    for instance in (stepwise, straight):
+        instance.set_values({"s_rel_x": -1e-6})
+    for instance in (moving, stepwise, straight):
+        instance.step()
+    assert moving.get() == stepwise.get()
+    assert moving.get("E_loss")["E_loss"] > 2.0 * straight.get("E_loss")["E_loss"] > 0.0
+
+
 def test_input_derivatives_that_cannot_be_used_are_refused(host: Host) -> None:
     instance = host("GearContact", "fmi2").start({"f": 900.0})
     before = instance.get()
