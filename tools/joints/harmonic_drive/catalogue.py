@@ -97,8 +97,8 @@ def find_ratio(drive: CatalogueEntry, ratio: float) -> CatalogueEntry:
     if ratio in siblings:
         return siblings[ratio]
     raise ValueError(
-        f"--ratio = {ratio:g} is not in the catalogue for {_name_without_ratio(drive).strip('-')}, allowed are "
-        f"{', '.join(f'{known:g}' for known in sorted(siblings))} (jointfmu catalogue); without --catalogue, "
+        f"--ratio = {ratio:g} is not in the catalogue for {_name_without_ratio(drive).strip('-')}, allowed "
+        f"are {', '.join(f'{known:g}' for known in sorted(siblings))} (jointfmu catalogue); without --catalogue, "
         "state the numbers of the row"
     )
 
