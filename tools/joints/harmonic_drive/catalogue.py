@@ -98,8 +98,8 @@ def find_ratio(drive: CatalogueEntry, ratio: float) -> CatalogueEntry:
         return siblings[ratio]
     raise ValueError(
         f"--ratio = {ratio:g} is not in the catalogue for {_name_without_ratio(drive).strip('-')}, allowed "
-        f"are {', '.join(f'{known:g}' for known in sorted(siblings))} (jointfmu catalogue); without --catalogue, "
-        "state the numbers of the row"
+        f"are {', '.join(f'{known:g}' for known in sorted(siblings))} (jointfmu catalogue); without "
+        "--catalogue, state the numbers of the row"
     )
 
 
