@@ -89,17 +89,21 @@ def find_ratio(drive: CatalogueEntry, ratio: float) -> CatalogueEntry:
 
     Raises ValueError with the ratios of the catalogue if there is no such drive.
     """
-    siblings = {item.numbers["ratio"].value: item for item in list_drives() if _stem(item) == _stem(drive)}
+    siblings = {
+        item.numbers["ratio"].value: item
+        for item in list_drives()
+        if _name_without_ratio(item) == _name_without_ratio(drive)
+    }
     if ratio in siblings:
         return siblings[ratio]
     raise ValueError(
-        f"--ratio = {ratio:g} is not in the catalogue for {_stem(drive).strip('-')}, allowed are "
-        f"{', '.join(f'{known:g}' for known in sorted(siblings))} (jointfmu catalogue); without --catalogue, "
-        "state the numbers of the row"
+        f"--ratio = {ratio:g} is not in the catalogue for {_name_without_ratio(drive).strip('-')}, allowed "
+        f"are {', '.join(f'{known:g}' for known in sorted(siblings))} (jointfmu catalogue); without "
+        "--catalogue, state the numbers of the row"
     )
 
 
-def _stem(drive: CatalogueEntry) -> str:
+def _name_without_ratio(drive: CatalogueEntry) -> str:
     """Name of a drive in the catalogue without its ratio: series, size, and parts after the ratio."""
     parts, ratio = drive.name.split("-"), f"{drive.numbers['ratio'].value:g}"
     places = [place for place, part in enumerate(parts) if part == ratio]

@@ -290,7 +290,7 @@ class NodalField:
         return np.stack([self.each_bolt_x, self.each_bolt_y], axis=-1)
 
     def pressure_distribution(self) -> PressureDistribution:
-        """Pressure distribution at the points."""
+        """Pressure distribution of the field, with its points as nodes."""
         return self._make_distribution("")
 
     def friction_patches(self) -> FrictionPatches | None:

@@ -141,7 +141,8 @@ def compute_joint_of_assembly(
     make_assembly       : builds the bodies
     preload             : [N] of each bolt at tightening
     attachment          : surfaces that move rigidly with the connected bodies, a key of ATTACHMENTS
-    normalised_pressure : computed, at all nodes of the finite elements; None: that of the file
+    normalised_pressure : computed pressure distribution at all nodes of the finite elements; None: use the
+        distribution of the parameter file
 
     Raises ValueError for bolt heads that overlap or extend beyond the plate, and if a package is missing.
     """
