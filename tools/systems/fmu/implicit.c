@@ -184,7 +184,7 @@ static void solve(StepWork *w)
 
 /* First guess of the accelerations at middle and end of a half step, by the parabola through those at start, middle and
  * end of another half step (`known`); `middle` and `end` are times since its start over its size. */
-static void predict_accelerations(const double known[3][N_BODIES], double middle, double end, double *guess)
+static void predict_accelerations(double known[3][N_BODIES], double middle, double end, double *guess)
 {
     for (size_t i = 0; i < N_BODIES; i++) {
         const double a = known[0][i], last = known[2][i] - a, first = 4.0 * (known[1][i] - a) - last;

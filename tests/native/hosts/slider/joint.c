@@ -40,7 +40,7 @@ static double move(const Joint *joint, double u, const double *history, double *
 bool joint_evaluate(Joint *joint, const double *inputs, const double *history, double *history_end, size_t n_outputs,
                     double *outputs, Text *reason)
 {
-    (void)reason;
+    (void)n_outputs, (void)reason;
     outputs[1] = move(joint, inputs[0], history, &outputs[0], &outputs[2]);
     history_end[FORCE] = outputs[0];
     history_end[LOSS] = outputs[2];
