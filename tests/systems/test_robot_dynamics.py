@@ -152,7 +152,7 @@ def test_inverse_dynamics_is_pinocchios(name):
         ("</worldbody>", '</worldbody><equality><connect name="bar" body1="tool" anchor="0 0 0"/></equality>',
          "the constraint bar closes a loop"),
         ('<joint name="left" axis="0 0 1"/>', '<joint name="left" type="ball"/>',
-         "joint 'left' is of type ball; allowed are hinge and slide"),
+         "joint 'left' of body 'left' is of type ball; allowed are hinge and slide"),
     ],
 )  # fmt: skip
 def test_what_is_no_tree_is_refused(old, new, line):
