@@ -29,6 +29,8 @@ class CFunction:
     called_in_loops : whether the C calls it inside loops: then it is inlined whatever its length
     has_workspace   : whether y has room for N_WORKSPACE intermediate values behind the results: for functions
         so long that these values need too much stack
+    leading_count   : number of leading results that the function can compute alone, see `format_function`;
+        None: always all results
     """
 
     name: str
@@ -37,6 +39,7 @@ class CFunction:
     result_expressions: Sequence[ca.SX]
     called_in_loops: bool = False
     has_workspace: bool = False
+    leading_count: int | None = None
 
 
 @dataclass(slots=True)
@@ -65,10 +68,13 @@ class FunctionGraph:
         result_expressions: Symbols,
         called_in_loops: bool = False,
         has_workspace: bool = False,
+        leading_count: int | None = None,
     ) -> None:
         """Add a C function to the graph."""
         results = [ca.SX(value) for value in result_expressions]
-        self.functions.append(CFunction(name, doc, argument_symbols, results, called_in_loops, has_workspace))
+        self.functions.append(
+            CFunction(name, doc, argument_symbols, results, called_in_loops, has_workspace, leading_count)
+        )
 
     def add_function_with_derivative(
         self,
@@ -77,13 +83,15 @@ class FunctionGraph:
         argument_symbols: Sequence[ca.SX],
         result_expressions: Symbols,
         constant_count: int = 0,
+        leading_count: int | None = None,
     ) -> None:
         """Add a C function, and its directional derivative along a seed as `NAME_seed`.
 
         constant_count : number of leading arguments that are constant in the derivative
+        leading_count  : number of leading results that both functions can compute alone; None: always all
         """
-        self.add_function(name, doc, argument_symbols, result_expressions)
-        self.add_derivative(name, "x", argument_symbols, result_expressions, constant_count)
+        self.add_function(name, doc, argument_symbols, result_expressions, leading_count=leading_count)
+        self.add_derivative(name, "x", argument_symbols, result_expressions, constant_count, leading_count)
 
     def add_derivative(
         self,
@@ -92,10 +100,12 @@ class FunctionGraph:
         argument_symbols: Sequence[ca.SX],
         result_expressions: Symbols,
         constant_count: int,
+        leading_count: int | None = None,
     ) -> None:
         """Add the directional derivative of a C function along a seed, as `NAME_seed`.
 
         constant_count : number of leading arguments that are constant in the derivative
+        leading_count  : number of leading results that it can compute alone; None: always all
         """
         variables = ca.vertcat(*argument_symbols[constant_count:])
         seed = make_symbols("seed", len(argument_symbols) - constant_count)
@@ -107,6 +117,7 @@ class FunctionGraph:
             f"Derivative along a seed: {doc}, seed -> y of {name}",
             [*argument_symbols, *seed],
             list(slope.nz),
+            leading_count=leading_count,
         )
 
     def extract_constants(self) -> None:

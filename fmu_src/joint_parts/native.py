@@ -130,10 +130,15 @@ def _add_equations(function_graph: FunctionGraph, model: Model) -> None:
             model.find_event_times(function_graph.joint),
         )
     results = [outputs[o.name] for o in model.outputs]
+    leading_count = model.state_count * 3 // 2 or len(results)
     if not model.evaluate_residuals:
-        function_graph.add_function_with_derivative("outputs", doc, list(v.values()), results)
+        function_graph.add_function_with_derivative(
+            "outputs", doc, list(v.values()), results, leading_count=leading_count
+        )
         return
-    function_graph.add_function("outputs", doc, list(v.values()), results, has_workspace=True)
+    function_graph.add_function(
+        "outputs", doc, list(v.values()), results, has_workspace=True, leading_count=leading_count
+    )
     _add_jacobian(function_graph, model, v, results, model.evaluate_residuals)
 
 
@@ -175,6 +180,7 @@ def _add_jacobian(
         [x for symbol in (*symbols, seed) for x in symbol.nz],
         [*ca.vertsplit(other_rates[:count]), *ca.vertsplit(rates), *ca.vertsplit(other_rates[count:])],
         has_workspace=True,
+        leading_count=count * 3 // 2,
     )
 
 

@@ -265,7 +265,7 @@ def test_friction_is_a_constraint_where_the_integrator_bears_no_bristles(tmp_pat
     for option, loss, noted in (
         ('integrator="RK4"', 0.0204, []),
         ('timestep="2e-4"', 0.0, []),
-        ('timestep="2e-3"', 0.0, ["joint6: friction builds up over 0.0816 rad of the motor"]),
+        ('timestep="2e-3"', 0.0, ["joint6: friction builds up over 0.0816 rad of the motor in the MJCF"]),
     ):
         robot = tmp_path / "robot.xml"
         robot.write_text(text.replace('<option timestep="0.0005"/>', f"<option {option}/>"))
@@ -274,7 +274,7 @@ def test_friction_is_a_constraint_where_the_integrator_bears_no_bristles(tmp_pat
         assert model.dof_frictionloss.max() == pytest.approx(loss, rel=0.01)
         assert model.na == (not loss)
         assert [line.split(",")[0] for line in said["notes"] if "builds" in line] == noted
-        note = "the robot's timestep, 0.002 s, is too long for the drives; use at most 0.000676 s"
+        note = "the timestep of the MJCF, 0.002 s, is too long for the drives; use at most 0.000676 s"
         assert [line for line in said["notes"] if "timestep" in line] == ([] if "2e-4" in option else [note])
 
 
@@ -435,6 +435,63 @@ def test_a_file_that_is_no_robot_is_refused(tmp_path, capsys):
     (tmp_path / "no.xml").write_text("<nothing/>")
     line = refused_line(capsys, "robot", tmp_path / "no.xml", "--drive", "a=CSG-14-100", "--out", tmp_path)
     assert "no.xml: cannot be read as a robot" in line
+
+
+INERTIAL = "<inertial><mass value='2'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial>"
+URDF_TEXT = f"""<robot name="two">
+<link name="base"/><link name="arm">{INERTIAL}</link><link name="tool">{INERTIAL}</link>
+<joint name="turn" type="continuous"><parent link="base"/><child link="arm"/><axis xyz="0 1 0"/></joint>
+<joint name="tip" type="JOINT"><parent link="arm"/><child link="tool"/><origin xyz="0.3 0 0"/></joint>
+</robot>"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "part", "advice"),
+    [
+        (
+            f'"tool">{INERTIAL}',
+            '"tool">',
+            "'tool'",
+            "; state the mass and the inertia of this link in its <inertial>",
+        ),
+        (
+            f'"tool">{INERTIAL}',
+            f'"tool">{INERTIAL}<collision><geometry><mesh filename="away.stl"/></geometry></collision>',
+            "'away.stl'",
+            "; expected this file in the folder of the robot file, or in its meshdir",
+        ),
+    ],
+)
+def test_what_a_urdf_lacks_is_said_with_what_to_do(tmp_path, capsys, old, new, part, advice):
+    file = tmp_path / "two.urdf"
+    file.write_text(URDF_TEXT.replace("JOINT", "continuous").replace(old, new))
+    line = refused_line(capsys, "robot", file, "--drive", "turn=CSG-14-100", "--out", tmp_path)
+    assert "two.urdf: cannot be read as a robot (MJCF or URDF): " in line
+    assert part in line
+    assert line.endswith(f"{advice}\n")
+
+
+def test_a_missing_robot_file_is_said(tmp_path, capsys):
+    line = refused_line(
+        capsys, "robot", tmp_path / "away.urdf", "--drive", "turn=CSG-14-100", "--out", tmp_path
+    )
+    assert line.endswith("away.urdf: cannot be read (no such file); expected a robot (MJCF or URDF)\n")
+
+
+def test_a_link_without_mass_is_said(tmp_path, capsys, few_poses):
+    """MuJoCo takes it, because the tool that is fixed to the link has mass."""
+    file = tmp_path / "two.urdf"
+    complete = URDF_TEXT.replace("JOINT", "fixed")
+    for text, noted in (
+        (complete, []),
+        (
+            complete.replace(f'"arm">{INERTIAL}', '"arm">'),
+            ["arm: no mass in the file; only bodies that are fixed to it have mass"],
+        ),
+    ):
+        file.write_text(text)
+        said = made(capsys, file, tmp_path / "out", "--drive", "turn=CSG-14-100")
+        assert [line for line in said["notes"] if "no mass" in line] == noted
 
 
 def test_a_drive_that_no_weight_loads_is_said_and_drawn_so(tmp_path, capsys, few_poses, monkeypatch):

@@ -125,20 +125,24 @@ def test_rotors_are_bodies_of_mujoco():
 
 
 @needs("Pinocchio")
-def test_inverse_dynamics_is_pinocchios():
+@pytest.mark.parametrize("name", ["six_axis", *OTHERS])
+def test_inverse_dynamics_is_pinocchios(name):
+    """Pinocchio reads the first body of the world only: of the two arms of OpenArm, the left one."""
     import pinocchio
 
-    file = robot_file("ur5e")
-    model, own = pinocchio.buildModelFromUrdf(str(file)), read_robot(file).compile()
+    file = ROBOT if name == "six_axis" else robot_file(name)
+    read = pinocchio.buildModelFromMJCF if file.suffix == ".xml" else pinocchio.buildModelFromUrdf
+    model, own = read(str(file)), read_robot(file).compile()
     q, v, a = random_states(own)
     data, links = model.createData(), read_links(own, ())
-    places = [model.idx_vs[model.getJointId(link.name)] for link in links]
-    expected = np.empty_like(q)
+    joints = [own.joint(joint).id for joint in [*model.names][1:]]
+    assert model.nv == len(joints) == {"six_axis": 6, "ur5e": 6, "openarm": 9}[name]
+    expected = np.empty((STATES, model.nv))
     for k in range(STATES):
         state = np.empty((3, model.nv))
-        state[:, places] = q[k], v[k], a[k]
-        expected[k] = pinocchio.rnea(model, data, *state)[places]
-    found = solve_forces(links, model.gravity.linear.tolist(), q, v, a)
+        state[:, model.idx_vs[1:]] = q[k, joints], v[k, joints], a[k, joints]
+        expected[k] = (pinocchio.rnea(model, data, *state) + model.damping * state[1])[model.idx_vs[1:]]
+    found = solve_forces(links, model.gravity.linear.tolist(), q, v, a)[:, joints]
     assert np.abs(found - expected).max() < PRECISION * np.abs(expected).max()
 
 
@@ -148,7 +152,7 @@ def test_inverse_dynamics_is_pinocchios():
         ("</worldbody>", '</worldbody><equality><connect name="bar" body1="tool" anchor="0 0 0"/></equality>',
          "the constraint bar closes a loop"),
         ('<joint name="left" axis="0 0 1"/>', '<joint name="left" type="ball"/>',
-         "joint 'left' is of type ball; allowed are hinge and slide"),
+         "joint 'left' of body 'left' is of type ball; allowed are hinge and slide"),
     ],
 )  # fmt: skip
 def test_what_is_no_tree_is_refused(old, new, line):

@@ -116,8 +116,10 @@ static bool evaluate_rigid(JointModel *model, const double *q, const double *his
     return true;
 }
 
-bool joint_evaluate(Joint *joint, const double *inputs, const double *history, double *after, double *out, Text *reason)
+bool joint_evaluate(Joint *joint, const double *inputs, const double *history, double *after, size_t n_outputs,
+                    double *out, Text *reason)
 {
+    (void)n_outputs;
     JointModel *model = &joint->model;
     OutputSums *sums = &model->sums;
     double q[N_DISPLACEMENTS];
@@ -227,8 +229,9 @@ static bool side_derivative(Joint *joint, const Seed *seed, double side, double 
 }
 
 void joint_derivative(Joint *joint, const double *inputs, const double *history, const double *after,
-                      const double *seed, double *result)
+                      const double *seed, size_t n_outputs, double *result)
 {
+    (void)n_outputs;
     JointModel *model = &joint->model;
     const double tightening[4] = {inputs[INPUT_PRELOAD], inputs[INPUT_TEMPERATURE], seed[INPUT_PRELOAD],
                                   seed[INPUT_TEMPERATURE]};

@@ -59,11 +59,11 @@ static bool evaluate_curve(const Joint *joint, double pressure, double *x, doubl
            evaluate_law_state(&model->spots, joint->constants, pressure, u, x + 2, slopes + 2, reason);
 }
 
-bool joint_evaluate(Joint *joint, const double *inputs, const double *history, double *history_end, double *out,
-                    Text *reason)
+bool joint_evaluate(Joint *joint, const double *inputs, const double *history, double *history_end, size_t n_outputs,
+                    double *out, Text *reason)
 {
     double pressure, x[1 + N_CURVE_RESULTS], slopes[N_CURVE_RESULTS];
-    (void)history, (void)history_end;
+    (void)history, (void)history_end, (void)n_outputs;
     curve_argument(inputs, joint->constants, &pressure);
     x[0] = inputs[0];
     if (!evaluate_curve(joint, pressure, &x[1], slopes, reason))
@@ -73,14 +73,14 @@ bool joint_evaluate(Joint *joint, const double *inputs, const double *history, d
 }
 
 void joint_derivative(Joint *joint, const double *inputs, const double *history, const double *history_end,
-                      const double *seed, double *result)
+                      const double *seed, size_t n_outputs, double *result)
 {
     (void)history_end;
     enum { N = 1 + N_CURVE_RESULTS };
     double pressure, rate, x[2 * N];
     const double input_and_seed[2] = {inputs[0], seed[0]};
     Text ignored;
-    (void)history;
+    (void)history, (void)n_outputs;
     text_clear(&ignored);
     curve_argument(inputs, joint->constants, &pressure);
     curve_argument_seed(input_and_seed, joint->constants, &rate);

@@ -156,11 +156,11 @@ enum {
     N_OUTPUT_ARGUMENTS = 1 + N_INPUTS + N_PAIR_RESULTS
 }; /* arguments of `outputs`: closing_end, inputs, results of `evaluate_pair` */
 
-bool joint_evaluate(Joint *joint, const double *inputs, const double *history, double *history_end, double *out,
-                    Text *reason)
+bool joint_evaluate(Joint *joint, const double *inputs, const double *history, double *history_end, size_t n_outputs,
+                    double *out, Text *reason)
 {
     double deflection, x[N_OUTPUT_ARGUMENTS], y[2];
-    (void)history, (void)history_end, (void)reason;
+    (void)history, (void)history_end, (void)n_outputs, (void)reason;
     curve_argument(inputs, joint->constants, &deflection);
     x[0] = joint->model.closing_end;
     for (int i = 0; i < N_INPUTS; i++)
@@ -171,12 +171,12 @@ bool joint_evaluate(Joint *joint, const double *inputs, const double *history, d
 }
 
 void joint_derivative(Joint *joint, const double *inputs, const double *history, const double *history_end,
-                      const double *seed, double *result)
+                      const double *seed, size_t n_outputs, double *result)
 {
     (void)history_end;
     double deflection, rate, inputs_and_seed[2 * N_INPUTS], x[2 * N_OUTPUT_ARGUMENTS - 1], y[3];
     double *x_rate = &x[N_OUTPUT_ARGUMENTS]; /* rates of all arguments except closing_end */
-    (void)history;
+    (void)history, (void)n_outputs;
     for (int i = 0; i < N_INPUTS; i++) {
         x[1 + i] = inputs_and_seed[i] = inputs[i];
         x_rate[i] = inputs_and_seed[N_INPUTS + i] = seed[i];

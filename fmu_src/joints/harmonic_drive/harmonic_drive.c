@@ -158,8 +158,8 @@ static void set_friction_arguments(const double *x, double ripple, double *y)
     y[FRICTION_RIPPLE] = ripple;
 }
 
-bool joint_evaluate(Joint *joint, const double *inputs, const double *history, double *history_end, double *out,
-                    Text *reason)
+bool joint_evaluate(Joint *joint, const double *inputs, const double *history, double *history_end, size_t n_outputs,
+                    double *out, Text *reason)
 {
     JointModel *model = &joint->model;
     double x[N_OUTPUT_ARGUMENTS];
@@ -188,12 +188,12 @@ bool joint_evaluate(Joint *joint, const double *inputs, const double *history, d
     x[LOSS] = history[HISTORY_LOSS] + model->hysteresis_update.loss + model->friction_update.loss;
     history_end[HISTORY_WIND_UP] = model->phi;
     history_end[HISTORY_LOSS] = x[LOSS];
-    outputs(x, joint->constants, out);
+    outputs(x, joint->constants, n_outputs, out);
     return true;
 }
 
 void joint_derivative(Joint *joint, const double *inputs, const double *history, const double *history_end,
-                      const double *seed, double *result)
+                      const double *seed, size_t n_outputs, double *result)
 {
     (void)history_end;
     const JointModel *model = &joint->model;
@@ -235,5 +235,5 @@ void joint_derivative(Joint *joint, const double *inputs, const double *history,
         x[N_OUTPUT_ARGUMENTS + DRY_FRICTION] = friction_torque_rate.force[0];
         x[N_OUTPUT_ARGUMENTS + LOSS] += friction_torque_rate.loss;
     }
-    outputs_seed(x, joint->constants, result);
+    outputs_seed(x, joint->constants, n_outputs, result);
 }

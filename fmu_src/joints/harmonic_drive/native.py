@@ -107,7 +107,7 @@ def _add_functions(function_graph: FunctionGraph, model: Model) -> None:
         ),
         *(state.phi_error, state.phi_error_slope, dry_friction_torque),
     ]
-    function_graph.add_function_with_derivative("outputs", doc, x, y)
+    function_graph.add_function_with_derivative("outputs", doc, x, y, leading_count=1 if locked else 2)
 
 
 def _is_torque_input(model: Model) -> bool:

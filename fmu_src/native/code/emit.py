@@ -89,6 +89,7 @@ def format_function(
     result_expressions: Sequence[ca.SX],
     is_derivative: bool = False,
     has_workspace: bool = False,
+    leading_count: int | None = None,
 ) -> str:
     """C code of `void name(const double *x, const double *c, double *y)`.
 
@@ -99,6 +100,8 @@ def format_function(
         at an infinite slope; and the derivative of min or max of two equal values is that of the first.
     has_workspace : whether intermediate values are in the array y behind the results, not on the stack; see
         `count_workspace`
+    leading_count : number of results that the function can compute alone; it then has the argument `size_t n`
+        before y, the number of leading results to compute
     """
     graph = ca.Function(
         "f",
@@ -132,13 +135,17 @@ def format_function(
             operations[f"t{k}"] = (ca.OP_LE if code == ca.OP_DIV and simpler else code), names
     unused = [name for name in inputs if name not in used_inputs] + ([] if result_expressions else ["y"])
     body += [f"(void){name};" for name in unused]
+    if leading_count is not None:
+        body = _return_after_leading_results(body, leading_count)
     used_lines = _join_sines_and_cosines(_call_in_conditions(_drop_unused_lines(body)))
     code_lines = used_lines if is_derivative else _replace_repeated_divisions(used_lines)
     if has_workspace:
         first = f"double *const w = y + {len(result_expressions)}; /* intermediate values */"
         code_lines = [first, *_move_to_workspace(code_lines)]
     lines = "\n".join(f"    {line}" for line in _call_pairs_once(code_lines))
-    return f"/* {doc} */\nvoid {name}(const double *x, const double *c, double *y)\n{{\n{lines}\n}}\n"
+    count_argument = "" if leading_count is None else "size_t n, "
+    head = f"void {name}(const double *x, const double *c, {count_argument}double *y)"
+    return f"/* {doc} */\n{head}\n{{\n{lines}\n}}\n"
 
 
 def count_workspace(function_text: str) -> int:
@@ -221,6 +228,19 @@ def _drop_unused_lines(code_lines: Sequence[str]) -> list[str]:
         used_values.update(re.findall(r"\bt\d+\b", value))
         lines.append(line)
     return lines[::-1]
+
+
+def _return_after_leading_results(code_lines: Sequence[str], leading_count: int) -> list[str]:
+    """Move lines that the leading results need to the front, with a return behind them if n is small."""
+    needed = {f"y[{k}]" for k in range(leading_count)}
+    leading_lines, other_lines = list[str](), list[str]()
+    for line in reversed(code_lines):
+        name, _, value = line.removeprefix("const double ").partition(" = ")
+        if name in needed:
+            needed.update(_VALUE_PATTERN.findall(value))
+        (leading_lines if name in needed else other_lines).append(line)
+    condition = f"if (n <= {leading_count})\n        return;" if other_lines else "(void)n;"
+    return [*leading_lines[::-1], condition, *other_lines[::-1]]
 
 
 _CALL_PATTERN = re.compile(r"const double (t\d+) = (portable_\w+\(.*\));")

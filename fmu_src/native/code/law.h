@@ -2,6 +2,7 @@
 #define JOINTFMU_LAW_H
 
 #include <math.h>
+#include <stddef.h>
 
 #include "elementary.h"
 
@@ -36,9 +37,10 @@ extern const double {{ name }};
 {% endfor %}
 
 /* Each function computes y from the arguments x. c are the constants of the joint: parameters, parameters that are not
- * FMU variables, then the expressions of both that `law_constants` computes. */
-{% for name in prototypes %}
-void {{ name }}(const double *x, const double *c, double *y);
+ * FMU variables, then the expressions of both that `law_constants` computes. A function with the argument n may leave
+ * out the results from y[n] on. */
+{% for prototype in prototypes %}
+{{ prototype }};
 {% endfor %}
 {% if series %}
 typedef void LawFunction(const double *x, const double *c, double *y);

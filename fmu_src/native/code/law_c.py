@@ -40,7 +40,7 @@ def format_law(
             inline.append(text.replace("\nvoid ", "\nstatic inline void ", 1))
         else:
             bodies.append(text)
-            prototypes.append(name)
+            prototypes.append(text[text.index("void ") : text.index("\n{")])
     bodies += [
         format_array(f"LawFunction *const {name}[N_LAW_RANGE_BOUNDS + 1]", rows)
         for name, rows in series.items()
@@ -94,6 +94,7 @@ def _format_functions(function_graph: FunctionGraph) -> dict[str, str]:
             f.result_expressions,
             is_derivative=derivative,
             has_workspace=f.has_workspace,
+            leading_count=f.leading_count,
         )
     return texts
 

@@ -150,6 +150,10 @@ def run(args: argparse.Namespace) -> CommandResult:
             f"the payload is at the origin of {model.body(tip).name}, on the axis of {last}, and does not "
             "load that axis; state another body (a link of a URDF) with --tip BODY"
         )
+    notes += [
+        f"{body}: no mass in the file; only bodies that are fixed to it have mass"
+        for body in rigid_tree.list_massless_bodies(model)
+    ]
     if args.fmu and (omitted := rigid_tree.list_omissions(model)):
         notes.append(f"the FMU does not include {', '.join(omitted)}")
     lacking = (
@@ -160,7 +164,7 @@ def run(args: argparse.Namespace) -> CommandResult:
     notes += dict.fromkeys(lacking)
     if model.opt.timestep > longest:
         notes.append(
-            f"the robot's timestep, {model.opt.timestep:g} s, is too long for the drives; use at most "
+            f"the timestep of the MJCF, {model.opt.timestep:g} s, is too long for the drives; use at most "
             f"{longest:.3g} s"
         )
     facts = {

@@ -26,6 +26,11 @@ MOTOR_NAME_SUFFIX = "_motor"
 """Suffix of the name of a motor joint, after the name of the driven joint."""
 MOTOR_BODY_NAME_PREFIX = "drive_motors"
 """Prefix of the names of the bodies that carry the motors."""
+_READING_ADVICE = {
+    "mjMINVAL": "; state the mass and the inertia of this link in its <inertial>",
+    "Error opening file": "; expected this file in the folder of the robot file, or in its meshdir",
+}
+"""{part of an error of MuJoCo: what the user can do}, behind the error."""
 _MAX_JOINTS_PER_BODY = 6
 """Largest number of joints of a body in MuJoCo [1]."""
 _SMALL_REVERSAL_OVER_RATED_TORQUE = 1e-6
@@ -76,14 +81,18 @@ def read_robot(path: str | Path) -> Any:
     import mujoco
 
     check_mujoco_version()
-    check_regular_file(path, "a robot (MJCF or URDF)")
+    expected = "a robot (MJCF or URDF)"
+    check_regular_file(path, expected)
+    if not Path(path).exists():
+        raise ValueError(f"{path}: cannot be read (no such file); expected {expected}")
     try:
         spec = mujoco.MjSpec.from_file(str(path))
         spec.compiler.fusestatic = False  # keep the tool frames of a URDF, which are fixed links
         spec.compile()
     except (ValueError, OSError, mujoco.FatalError) as error:
-        line = " ".join(str(error).split())
-        raise ValueError(f"{path}: cannot be read as a robot (MJCF or URDF): {line}") from None
+        line = ", ".join(filter(None, map(str.strip, str(error).splitlines()))).removeprefix("Error: ")
+        advice = next((text for part, text in _READING_ADVICE.items() if part in line), "")
+        raise ValueError(f"{path}: cannot be read as {expected}: {line}{advice}") from None
     return spec
 
 
@@ -113,14 +122,14 @@ def make_axes(robot_spec: Any, drives: Mapping[str, Transmission]) -> list[Elast
                 rotor = float(matrix[dof, dof])
                 notes.append(
                     "no armature in the file; the rotor inertia is set equal to the inertia that the axis "
-                    "moves"
+                    "moves in the reference pose of the file"
                 )
             if drive.static_friction and bristles.is_integrator_stable(model.opt):
                 angle = bristles.presliding_angle(drive, rotor / drive.ratio**2, model.opt.timestep)
                 if angle > 1.01 * drive.presliding_angle:
                     notes.append(
-                        f"friction builds up over {angle:.3g} rad of the motor, as the step asks, "
-                        f"{drive.presliding_angle:g} rad in the FMU"
+                        f"friction builds up over {angle:.3g} rad of the motor in the MJCF, because its "
+                        f"steps are long, and over {drive.presliding_angle:g} rad in the FMU"
                     )
             lines = tuple(f"{joint.name}: {line}" for line in notes)
             spring = fit_drive(drive, drive.rated_torque)

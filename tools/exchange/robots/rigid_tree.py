@@ -82,6 +82,15 @@ def list_omissions(model: "MjModel") -> list[str]:
     return texts
 
 
+def list_massless_bodies(model: "MjModel") -> list[str]:
+    """Names of bodies with a joint but without mass of their own, in the order of the joints.
+
+    Bodies that are fixed to such a body have the mass of its link.
+    """
+    bodies = dict.fromkeys(model.jnt_bodyid.tolist())
+    return [model.body(k).name for k in bodies if not model.body_mass[k]]
+
+
 def check_tree(model: "MjModel") -> None:
     """Raise ValueError, one line, for a joint that is no hinge or slide, and for a closed loop."""
     import mujoco
@@ -90,7 +99,8 @@ def check_tree(model: "MjModel") -> None:
     for k in range(model.njnt):
         if int(model.jnt_type[k]) not in allowed:
             kind = mujoco.mjtJoint(model.jnt_type[k]).name.removeprefix("mjJNT_").lower()
-            raise ValueError(f"joint {model.joint(k).name!r} is of type {kind}; allowed are hinge and slide")
+            joint = f"joint {model.joint(k).name!r} of body {model.body(model.jnt_bodyid[k]).name!r}"
+            raise ValueError(f"{joint} is of type {kind}; allowed are hinge and slide")
     for name in _list_constraints(model, are_couplings=False):
         raise ValueError(
             f"the constraint {name} closes a loop; allowed are trees of links: remove it from the robot file"

@@ -60,7 +60,8 @@ def _list_missing_effects(drive: DriveParameters) -> Iterator[str]:
         )
         yield (
             "friction that grows with the load: at rated torque "
-            f"{loss:.4g} N.m at the motor where it drives, {back:.4g} N.m where the load does"
+            f"{loss:.4g} N.m at the motor if the motor drives the load, {back:.4g} N.m if the load drives "
+            "the motor"
         )
     if drive.friction_coulomb or drive.friction_viscous:
         yield "the temperature of the lubricant: friction is that at 20 degrees C"

@@ -188,6 +188,16 @@ def _count_time_events(component: SystemComponent) -> int:
     )
 
 
+def _count_motion_outputs(system_model: SystemModel, component: SystemComponent) -> int:
+    """Number of leading outputs of a component on which the motion of the system depends.
+
+    The last of them is the last acceleration of a body, or the last output that is the source of an input.
+    """
+    used = {feed for p in system_model.components for feed in p.sources.values()}
+    indices = [k for k, v in enumerate(component.model.outputs, 1) if (component.name, v.name) in used]
+    return max([3 * component.body_count, *indices])
+
+
 def _format_components(
     system_model: SystemModel, prefixes: Mapping[str, str], data_names: Mapping[str, str]
 ) -> str:
@@ -214,7 +224,8 @@ def _format_components(
             declared.append(f"void {prefix}joint_event_times(Joint *joint, double *times);\n")
         functions = [f"{prefix}joint_{name}" for name in _JOINT_C_FUNCTIONS]
         functions.append(f"{prefix}joint_event_times" if events else "NULL")
-        counts = [len(model.inputs), len(model.outputs), model.state_count, events, *offset.values()]
+        counts = [len(model.inputs), len(model.outputs), model.state_count, events]
+        counts += [_count_motion_outputs(system_model, component), *offset.values()]
         names = [format_string(component.name), f"&{data_names[component.name]}"]
         rows.append("{" + ", ".join([*names, *functions, *map(str, counts)]) + "}")
         inputs, outputs = len(model.inputs), len(model.outputs)

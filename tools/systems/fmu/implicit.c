@@ -57,14 +57,15 @@ static void set_stage_values(Instance *m, const TrialStep *s, size_t stage)
     }
 }
 
-/* Evaluate the outputs at a stage. false: refused, or an acceleration is not finite. */
+/* Evaluate the motion at a stage. false: refused, or an acceleration is not finite. */
 static bool evaluate_stage(Instance *m, const TrialStep *s, size_t stage, double *history_end)
 {
     double *values = m->joint->work.stage_values[stage];
     StepWork *w = &m->joint->work;
     text_clear(&w->refusal);
     set_stage_values(m, s, stage);
-    if (!joint_evaluate(m->joint, values + FIRST_INPUT, s->history, history_end, values + FIRST_OUTPUT, &w->refusal))
+    if (!joint_evaluate(m->joint, values + FIRST_INPUT, s->history, history_end, N_MOTION_OUTPUTS,
+                        values + FIRST_OUTPUT, &w->refusal))
         return false;
     for (size_t i = 0; i < N_BODIES; i++)
         if (!(fabs(values[A + i]) < INFINITY)) {
@@ -81,7 +82,8 @@ static void update_tangents(Instance *m, const TrialStep *s)
     for (size_t j = 0; j < N_STATES; j++) {
         memset(w->seed, 0, sizeof w->seed);
         w->seed[N_INPUTS + j] = 1.0;
-        joint_derivative(m->joint, w->stage_values[END] + FIRST_INPUT, s->history, NULL, w->seed, w->sensitivity);
+        joint_derivative(m->joint, w->stage_values[END] + FIRST_INPUT, s->history, NULL, w->seed, N_MOTION_OUTPUTS,
+                         w->sensitivity);
         for (size_t i = 0; i < N_BODIES; i++)
             w->acceleration_tangents[j][i] = w->sensitivity[2 * N_BODIES + i];
         if (j < N_BODIES)
@@ -326,7 +328,8 @@ static void set_end_history(Instance *m, const double *end, const double *histor
     memcpy(values + X, end, N_STATES * sizeof *values);
     for (size_t i = 0; i < N_BODIES; i++)
         values[X + i] -= BACKWARD_STEP_RATIO * size * values[V + i];
-    if (!joint_evaluate(m->joint, values + FIRST_INPUT, history, history_end, values + FIRST_OUTPUT, &w->refusal))
+    if (!joint_evaluate(m->joint, values + FIRST_INPUT, history, history_end, N_MOTION_OUTPUTS, values + FIRST_OUTPUT,
+                        &w->refusal))
         memcpy(history_end, history, sizeof w->history[0]);
 }
 

@@ -48,10 +48,11 @@ bool joint_tabulate(Joint *joint, const Data *joint_data, const double *paramete
     return true;
 }
 
-bool joint_evaluate(Joint *joint, const double *inputs, const double *history, double *history_end, double *outputs,
-                    Text *reason)
+bool joint_evaluate(Joint *joint, const double *inputs, const double *history, double *history_end, size_t n_outputs,
+                    double *outputs, Text *reason)
 {
     size_t body = 0;
+    const bool is_motion_only = n_outputs <= N_MOTION_OUTPUTS;
     for (size_t i = 0; i < N_COMPONENTS; i++) {
         const Component *c = &components[i];
         const unsigned short *sources = connections + c->first_connection, *targets = sources + c->n_inputs;
@@ -67,23 +68,25 @@ bool joint_evaluate(Joint *joint, const double *inputs, const double *history, d
         memcpy(component_outputs, outputs + body, n_bodies * sizeof *outputs);
         memcpy(component_outputs + n_bodies, outputs + N_BODIES + body, n_bodies * sizeof *outputs);
         body += n_bodies;
+        const size_t n = is_motion_only ? c->n_motion_outputs : c->n_outputs;
         Text component_reason;
         text_clear(&component_reason);
         if (!c->evaluate(joint->component[i], values + FIRST_INPUT, history + c->first_history,
-                         history_end + c->first_history, component_outputs, &component_reason)) {
+                         history_end + c->first_history, n, component_outputs, &component_reason)) {
             append_with_name(c, &component_reason, reason);
             return false;
         }
-        for (size_t k = c->n_states; k < c->n_outputs; k++)
+        for (size_t k = c->n_states; k < n; k++)
             outputs[targets[k] - FIRST_OUTPUT] = component_outputs[k];
     }
     return true;
 }
 
 void joint_derivative(Joint *joint, const double *inputs, const double *history, const double *history_end,
-                      const double *seed, double *result)
+                      const double *seed, size_t n_outputs, double *result)
 {
     size_t body = 0;
+    const bool is_motion_only = n_outputs <= N_MOTION_OUTPUTS;
     (void)inputs;
     memset(result, 0, N_OUTPUTS * sizeof *result);
     memcpy(result, seed + N_INPUTS, N_STATES * sizeof *result);
@@ -106,9 +109,10 @@ void joint_derivative(Joint *joint, const double *inputs, const double *history,
         body += n_bodies;
         if (!has_rate)
             continue;
+        const size_t n = is_motion_only ? c->n_motion_outputs : c->n_outputs;
         c->derivative(joint->component[i], values + FIRST_INPUT, history + c->first_history,
-                      history_end ? history_end + c->first_history : NULL, rate, output_rates);
-        for (size_t k = c->n_states; k < c->n_outputs; k++)
+                      history_end ? history_end + c->first_history : NULL, rate, n, output_rates);
+        for (size_t k = c->n_states; k < n; k++)
             result[targets[k] - FIRST_OUTPUT] = output_rates[k];
     }
 }

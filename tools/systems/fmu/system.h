@@ -14,14 +14,15 @@ typedef struct {
     size_t (*size)(void);
     void (*free_tables)(Joint *joint);
     bool (*tabulate)(Joint *joint, const Data *joint_data, const double *parameters, Text *reason);
-    bool (*evaluate)(Joint *joint, const double *inputs, const double *history, double *history_end, double *outputs,
-                     Text *reason);
+    bool (*evaluate)(Joint *joint, const double *inputs, const double *history, double *history_end, size_t n_outputs,
+                     double *outputs, Text *reason);
     void (*derivative)(Joint *joint, const double *inputs, const double *history, const double *history_end,
-                       const double *seed, double *result);
+                       const double *seed, size_t n_outputs, double *result);
     unsigned (*find_warnings)(Joint *joint, const double *inputs, const double *outputs);
     void (*describe_warning)(Joint *joint, const double *inputs, const double *outputs, unsigned bit, Text *text);
     void (*event_times)(Joint *joint, double *times); /* NULL: no time events */
     unsigned n_inputs, n_outputs, n_states, n_events;
+    unsigned n_motion_outputs;  /* number of its leading outputs on which the motion of the system depends */
     unsigned first_parameter;   /* index of its first parameter among those of the system */
     unsigned first_history;     /* index of its first history variable among those of the system */
     unsigned first_value;       /* index of its values in `Joint.values`: time, inputs, outputs */
@@ -32,6 +33,8 @@ typedef struct {
 /* Components in the order of evaluation. Bodies are last; the states of the system are those of the bodies in this
  * order. */
 extern const Component components[N_COMPONENTS];
+/* Number of leading outputs of the system that implicit steps need: positions, speeds and accelerations. */
+enum { N_MOTION_OUTPUTS = 3 * N_BODIES };
 /* Value references in the system: of each input of a component the source (0: zero), of each output the variable. */
 extern const unsigned short connections[N_CONNECTIONS];
 

@@ -21,8 +21,8 @@ static double start_acceleration(Instance *m)
         for (size_t i = 0; i < N_INPUTS; i++)
             values[FIRST_INPUT + i] +=
                 state->values[FIRST_LAG_PARAMETER + i] * (values[FIRST_INPUT + i] - state->previous_inputs[i]);
-    joint_evaluate(m->joint, values + FIRST_INPUT, path_start_history(m), m->trial_history, values + FIRST_OUTPUT,
-                   &ignored);
+    joint_evaluate(m->joint, values + FIRST_INPUT, path_start_history(m), m->trial_history, N_OUTPUTS,
+                   values + FIRST_OUTPUT, &ignored);
     return values[ACCELERATION];
 }
 

@@ -184,7 +184,7 @@ Status instance_evaluate(Instance *m, Status refusal)
             return log_input_refusal(m, refusal, i);
     Text reason;
     text_clear(&reason);
-    if (!joint_evaluate(m->joint, inputs, path_start_history(m), m->trial_history, outputs, &reason))
+    if (!joint_evaluate(m->joint, inputs, path_start_history(m), m->trial_history, N_OUTPUTS, outputs, &reason))
         return log_refusal(m, refusal, &reason);
     bool all_finite = true;
     for (size_t i = 0; i < N_OUTPUTS; i++)

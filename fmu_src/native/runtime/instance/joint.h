@@ -26,16 +26,18 @@ void joint_free_tables(Joint *joint);
  * allowed values. */
 bool joint_tabulate(Joint *joint, const Data *joint_data, const double *parameters, Text *reason);
 
-/* Outputs, and history variables `history_end`, at the end of a straight load step from the history variables
- * `history` to inputs that are finite and inside their intervals. false: refused, with the reason. */
-bool joint_evaluate(Joint *joint, const double *inputs, const double *history, double *history_end, double *outputs,
-                    Text *reason);
+/* The first `n_outputs` outputs, and history variables `history_end`, at the end of a straight load step from the
+ * history variables `history` to inputs that are finite and inside their intervals. The values of the other outputs are
+ * then arbitrary. false: refused, with the reason. */
+bool joint_evaluate(Joint *joint, const double *inputs, const double *history, double *history_end, size_t n_outputs,
+                    double *outputs, Text *reason);
 
-/* Exact derivative of the outputs along `seed`, at the inputs and history of the last `joint_evaluate`; at a corner the
- * mean of both sides. `history_end`: that of the last evaluation if its inputs are accepted, so that a further motion
- * may start from it; else NULL. */
+/* Exact derivative of the first `n_outputs` outputs along `seed`, at the inputs and history of the last
+ * `joint_evaluate`; at a corner the mean of both sides. The results of the other outputs are then arbitrary.
+ * `history_end`: that of the last evaluation if its inputs are accepted, so that a further motion may start from it;
+ * else NULL. */
 void joint_derivative(Joint *joint, const double *inputs, const double *history, const double *history_end,
-                      const double *seed, double *result);
+                      const double *seed, size_t n_outputs, double *result);
 
 /* Bit of a warning that is no validity limit: inputs at 0 in place of their start values. */
 #define LOST_START_VALUE (1u << 31)

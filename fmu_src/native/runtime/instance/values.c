@@ -230,7 +230,7 @@ static Status check_derivative_arguments(Instance *m, const char *function, cons
 static void update_sensitivity(Instance *m)
 {
     joint_derivative(m->joint, m->state.values + FIRST_INPUT, path_start_history(m), path_end_history(m), m->seed,
-                     m->sensitivity);
+                     N_OUTPUTS, m->sensitivity);
 }
 
 Status instance_directional_derivative(Instance *m, const char *function, const uint32_t unknowns[], size_t n_unknowns,

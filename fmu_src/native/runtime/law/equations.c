@@ -44,20 +44,20 @@ bool joint_tabulate(Joint *joint, const Data *joint_data, const double *paramete
     return true;
 }
 
-bool joint_evaluate(Joint *joint, const double *inputs, const double *history, double *history_end, double *out,
-                    Text *reason)
+bool joint_evaluate(Joint *joint, const double *inputs, const double *history, double *history_end, size_t n_outputs,
+                    double *out, Text *reason)
 {
     double arguments[N_ARGUMENTS];
     (void)history, (void)history_end, (void)reason;
     memcpy(arguments, inputs - FIRST_INPUT, FIRST_OUTPUT * sizeof(double));
     memcpy(arguments + FIRST_OUTPUT, out, N_STATES * sizeof(double));
-    outputs(arguments, joint->constants, joint->results);
-    memcpy(out, joint->results, N_OUTPUTS * sizeof *out);
+    outputs(arguments, joint->constants, n_outputs, joint->results);
+    memcpy(out, joint->results, n_outputs * sizeof *out);
     return true;
 }
 
 void joint_derivative(Joint *joint, const double *inputs, const double *history, const double *history_end,
-                      const double *seed, double *result)
+                      const double *seed, size_t n_outputs, double *result)
 {
     (void)history, (void)history_end;
 #if HAS_JACOBIAN /* one evaluation for the seeds of all states */
@@ -67,14 +67,14 @@ void joint_derivative(Joint *joint, const double *inputs, const double *history,
         joint->jacobian_is_current = true;
     }
     memcpy(joint->jacobian + N_JACOBIAN, seed, (N_ARGUMENTS - 1) * sizeof *seed);
-    outputs_jacobian_product(joint->jacobian, joint->constants, joint->results);
-    memcpy(result, joint->results, N_OUTPUTS * sizeof *result);
+    outputs_jacobian_product(joint->jacobian, joint->constants, n_outputs, joint->results);
+    memcpy(result, joint->results, n_outputs * sizeof *result);
 #else
     double x[2 * N_ARGUMENTS];
     memcpy(x, inputs - FIRST_INPUT, N_ARGUMENTS * sizeof(double));
     x[N_ARGUMENTS] = 0.0; /* the derivative is at constant time */
     memcpy(x + N_ARGUMENTS + 1, seed, (N_ARGUMENTS - 1) * sizeof(double));
-    outputs_seed(x, joint->constants, result);
+    outputs_seed(x, joint->constants, n_outputs, result);
 #endif
 }
 

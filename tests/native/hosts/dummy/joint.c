@@ -35,11 +35,11 @@ bool joint_tabulate(Joint *joint, const Data *joint_data, const double *paramete
     return true;
 }
 
-bool joint_evaluate(Joint *joint, const double *inputs, const double *history, double *history_end, double *outputs,
-                    Text *reason)
+bool joint_evaluate(Joint *joint, const double *inputs, const double *history, double *history_end, size_t n_outputs,
+                    double *outputs, Text *reason)
 {
     const double preload = inputs[0], phi = inputs[1];
-    (void)history, (void)history_end;
+    (void)history, (void)history_end, (void)n_outputs;
     if (phi == 42.0) {
         text_append(reason, "phi = 42 rad is not possible, allowed is any other angle");
         return false;
@@ -51,10 +51,10 @@ bool joint_evaluate(Joint *joint, const double *inputs, const double *history, d
 }
 
 void joint_derivative(Joint *joint, const double *inputs, const double *history, const double *history_end,
-                      const double *seed, double *result)
+                      const double *seed, size_t n_outputs, double *result)
 {
     (void)history_end;
-    (void)history;
+    (void)history, (void)n_outputs;
     result[0] = joint->k * (1.0 + 3.0 * inputs[1] * inputs[1]) * seed[1] + seed[0];
     result[1] = 2.0 * inputs[0] * seed[0];
     result[2] = 0.0;

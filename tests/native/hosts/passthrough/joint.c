@@ -23,20 +23,20 @@ bool joint_tabulate(Joint *joint, const Data *joint_data, const double *paramete
     return true;
 }
 
-bool joint_evaluate(Joint *joint, const double *inputs, const double *history, double *history_end, double *outputs,
-                    Text *reason)
+bool joint_evaluate(Joint *joint, const double *inputs, const double *history, double *history_end, size_t n_outputs,
+                    double *outputs, Text *reason)
 {
-    (void)history, (void)history_end, (void)reason;
+    (void)history, (void)history_end, (void)n_outputs, (void)reason;
     for (int i = 0; i < N_OUTPUTS; i++)
         outputs[i] = joint->gain * inputs[i % N_INPUTS];
     return true;
 }
 
 void joint_derivative(Joint *joint, const double *inputs, const double *history, const double *history_end,
-                      const double *seed, double *result)
+                      const double *seed, size_t n_outputs, double *result)
 {
     (void)history_end;
-    (void)history, (void)inputs;
+    (void)history, (void)inputs, (void)n_outputs;
     for (int i = 0; i < N_OUTPUTS; i++)
         result[i] = joint->gain * seed[i % N_INPUTS];
 }

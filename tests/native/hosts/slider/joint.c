@@ -37,10 +37,10 @@ static double move(const Joint *joint, double u, const double *history, double *
     return slips ? 0.0 : joint->k;
 }
 
-bool joint_evaluate(Joint *joint, const double *inputs, const double *history, double *history_end, double *outputs,
-                    Text *reason)
+bool joint_evaluate(Joint *joint, const double *inputs, const double *history, double *history_end, size_t n_outputs,
+                    double *outputs, Text *reason)
 {
-    (void)reason;
+    (void)n_outputs, (void)reason;
     outputs[1] = move(joint, inputs[0], history, &outputs[0], &outputs[2]);
     history_end[FORCE] = outputs[0];
     history_end[LOSS] = outputs[2];
@@ -50,9 +50,9 @@ bool joint_evaluate(Joint *joint, const double *inputs, const double *history, d
 }
 
 void joint_derivative(Joint *joint, const double *inputs, const double *history, const double *history_end,
-                      const double *seed, double *result)
+                      const double *seed, size_t n_outputs, double *result)
 {
-    (void)history_end;
+    (void)history_end, (void)n_outputs;
     double force, loss;
     const double stiffness = move(joint, inputs[0], history, &force, &loss);
     result[0] = stiffness * seed[0] + seed[1];
