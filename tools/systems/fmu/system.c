@@ -87,23 +87,23 @@ void joint_derivative(Joint *joint, const double *inputs, const double *history,
 {
     size_t body = 0;
     const bool is_motion_only = n_outputs <= N_MOTION_OUTPUTS;
+    double *variable_rates = joint->variable_rates, *state_rates = variable_rates + FIRST_OUTPUT;
     (void)inputs;
-    memset(result, 0, N_OUTPUTS * sizeof *result);
-    memcpy(result, seed + N_INPUTS, N_STATES * sizeof *result);
+    memset(state_rates, 0, N_OUTPUTS * sizeof *state_rates);
+    memcpy(variable_rates + FIRST_INPUT, seed, (N_INPUTS + N_STATES) * sizeof *seed);
     for (size_t i = 0; i < N_COMPONENTS; i++) {
         const Component *c = &components[i];
         const unsigned short *sources = connections + c->first_connection, *targets = sources + c->n_inputs;
         const double *values = joint->values + c->first_value;
-        double *rate = joint->rates + c->first_value, *output_rates = rate + c->n_inputs + c->n_states;
+        double *rate = joint->component_rates, *output_rates = rate + c->n_inputs + c->n_states;
         bool has_rate = false;
         for (size_t k = 0; k < c->n_inputs; k++) {
-            const unsigned ref = sources[k];
-            rate[k] = !ref ? 0.0 : ref < FIRST_OUTPUT ? seed[ref - FIRST_INPUT] : result[ref - FIRST_OUTPUT];
+            rate[k] = variable_rates[sources[k]];
             has_rate |= rate[k] != 0.0;
         }
         const size_t n_bodies = c->n_states / 2;
-        memcpy(rate + c->n_inputs, result + body, n_bodies * sizeof *rate);
-        memcpy(rate + c->n_inputs + n_bodies, result + N_BODIES + body, n_bodies * sizeof *rate);
+        memcpy(rate + c->n_inputs, state_rates + body, n_bodies * sizeof *rate);
+        memcpy(rate + c->n_inputs + n_bodies, state_rates + N_BODIES + body, n_bodies * sizeof *rate);
         for (size_t k = c->n_inputs; k < c->n_inputs + c->n_states; k++)
             has_rate |= rate[k] != 0.0;
         body += n_bodies;
@@ -113,8 +113,9 @@ void joint_derivative(Joint *joint, const double *inputs, const double *history,
         c->derivative(joint->component[i], values + FIRST_INPUT, history + c->first_history,
                       history_end ? history_end + c->first_history : NULL, rate, n, output_rates);
         for (size_t k = c->n_states; k < n; k++)
-            result[targets[k] - FIRST_OUTPUT] = output_rates[k];
+            variable_rates[targets[k]] = output_rates[k];
     }
+    memcpy(result, state_rates, n_outputs * sizeof *result);
 }
 
 unsigned joint_find_warnings(Joint *joint, const double *inputs, const double *outputs)

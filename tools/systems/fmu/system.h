@@ -61,7 +61,9 @@ typedef struct {
 struct Joint {
     Joint *component[N_COMPONENTS];
     double values[N_COMPONENT_VALUES]; /* of all components, in the last evaluation */
-    double rates[N_COMPONENT_VALUES];  /* derivatives of the values along a seed */
+    /* Derivatives along a seed: of time (0), inputs and outputs of the system; of inputs and states of one component,
+     * which are its seed, then of its outputs. */
+    double variable_rates[FIRST_PARAMETER], component_rates[N_COMPONENT_VALUES + N_STATES];
     StepWork work;
     double component_joints[]; /* memory of the components' joints */
 };
