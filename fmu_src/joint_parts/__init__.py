@@ -62,7 +62,10 @@ def make_native_definition_loader(package_name: str) -> "Callable[[], NativeDefi
 
 
 def load_equations_definition() -> "NativeDefinition":
-    """C definition of a joint whose outputs are explicit functions, without C sources of its own."""
+    """Import and return the C definition of a joint whose outputs are explicit functions.
+
+    Explicit functions of parameters, inputs and states. Such a joint has no C sources of its own.
+    """
     from .native import EXPLICIT_EQUATIONS_DEFINITION
 
     return EXPLICIT_EQUATIONS_DEFINITION

@@ -52,12 +52,12 @@ def _private_module_name(module: str) -> str:
     return re.sub(r"^jointfmu\b\.?", "", re.sub(r"^jointfmu_fmu_src\b", "fmus", module))
 
 
-def _rewrite_imports(text: str, root_packages: Collection[str]) -> str:
+def _rewrite_imports(module_text: str, root_packages: Collection[str]) -> str:
     """Rewrite the imports of public packages in a module text to the private package."""
     for root in root_packages:
         package = f"{_PACKAGE_PLACEHOLDER}.{_private_module_name(root)}".rstrip(".")
-        text = re.sub(rf"^from {root}\b", f"from {package}", text, flags=re.MULTILINE)
-    return text
+        module_text = re.sub(rf"^from {root}\b", f"from {package}", module_text, flags=re.MULTILINE)
+    return module_text
 
 
 def build_python_fmu(
@@ -116,7 +116,7 @@ def _run_pythonfmu(script: Path, package: str, output_folder: Path) -> Path:
     """Build an FMU with the installed pythonfmu, and restore sys.path and sys.modules afterwards.
 
     An FMU that runs in this process may have imported its own copy of pythonfmu, which has no libraries, in
-    place of the installed one. If that FMU has equal content, its modules are imported too.
+    place of the installed one. That copy is then removed from sys.modules while this function runs.
     """
     import pythonfmu
 

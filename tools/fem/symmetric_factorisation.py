@@ -32,7 +32,9 @@ class SymmetricFactorisation:
     """
 
     def __init__(self, matrix: sp.csr_matrix, reflections: Sequence[sp.csr_matrix]) -> None:
-        bases = [_symmetry_basis(matrix.shape[0], class_) for class_ in _symmetry_classes(reflections)]
+        bases = [
+            _symmetry_basis(matrix.shape[0], class_) for class_ in _combine_reflection_signs(reflections)
+        ]
         # the product of the matrix and a class is in the class: one row of each image is enough
         self._factors = [Cholesky(_representative_rows(basis) @ matrix @ basis) for basis in bases]
         self._ends = np.cumsum([basis.shape[1] for basis in bases])[:-1]
@@ -96,8 +98,8 @@ def _largest_in_columns(matrix: Array | sp.spmatrix) -> Array:
     return largest.toarray().ravel() if sp.issparse(largest) else largest
 
 
-def _symmetry_classes(reflections: Sequence[sp.csr_matrix]) -> Iterator[list[sp.csr_matrix]]:
-    """Yield the classes of displacements: each reflection with a sign, 1 symmetric and -1 antisymmetric."""
+def _combine_reflection_signs(reflections: Sequence[sp.csr_matrix]) -> Iterator[list[sp.csr_matrix]]:
+    """Yield the reflections times 1 (symmetric displacements) or -1 (antisymmetric), in each combination."""
     for signs in product((1.0, -1.0), repeat=len(reflections)):
         yield [sign * reflection for sign, reflection in zip(signs, reflections, strict=True)]
 

@@ -183,9 +183,9 @@ class LoadedLibrary:
         self._booleans = {name for name, item in fields.items() if "allowed" in item.metadata}
         messages = self._messages
 
-        def log(environment: Any, status: int, category: bytes, text: bytes) -> None:
+        def log(environment: Any, status: int, category: bytes, message: bytes) -> None:
             """Callback of the instance: store its log message."""
-            messages.append((status, text.decode("utf-8", "replace")))
+            messages.append((status, message.decode("utf-8", "replace")))
 
         self._logger = _LOGGER_TYPE(log)
         folder = tempfile.mkdtemp(prefix="jointfmu-")

@@ -171,16 +171,16 @@ def _scale_partner(
     Loads scale with the rated load, inertias with the rated load over the motion of the flange. The permanent
     load `ramp_height` also changes by the difference of the friction of both joints.
     """
-    load = rating_after.load / rating_before.load
-    inertia = load * rating_before.motion / rating_after.motion
-    if (load, inertia, rating_after.friction) == (1.0, 1.0, rating_before.friction):
+    load = rating_after.rated_load / rating_before.rated_load
+    inertia = load * rating_before.motion_over_output_motion / rating_after.motion_over_output_motion
+    if (load, inertia, rating_after.static_friction_load) == (1.0, 1.0, rating_before.static_friction_load):
         return partner
     values, sources = dict(partner.values), dict(partner.sources)
     for name, unit in partner.units.items():
         if factor := {"N.m": load, "N": load, "kg.m2": inertia, "kg": inertia}.get(unit):
             values[name] = factor * values[name]
             if name == "ramp_height":
-                values[name] += rating_after.friction - rating_before.friction
+                values[name] += rating_after.static_friction_load - rating_before.static_friction_load
             sources[name] += f"; scaled to {joint_name}"
     return replace(partner, values=values, sources=sources)
 

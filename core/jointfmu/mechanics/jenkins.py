@@ -215,7 +215,10 @@ class SliderUpdate:
 
     @property
     def traction(self) -> Array:
-        """Sum of the friction forces of all sliders, (...) or (..., 2)."""
+        """Friction traction: sum of the friction forces of all sliders, in the unit of `force`.
+
+        Shape (...) along one direction, (..., 2) in a plane.
+        """
         return np.asarray(np.sum(self.force, axis=-1))
 
 

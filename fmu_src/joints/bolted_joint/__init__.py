@@ -128,14 +128,14 @@ def _encode_modal_rows(modal_rows: Any) -> Any:
     )
 
 
-def _distribution_rows(distribution: PressureDistribution) -> Any:
+def _distribution_rows(pressure_distribution: PressureDistribution) -> Any:
     """Rows (n, 5) of the contact points: area share, x, y, and both pressure ratios."""
     return np.column_stack(
         [
-            distribution.area_share,
-            distribution.position,
-            distribution.preload_pressure_ratio,
-            distribution.moment_pressure_ratio,
+            pressure_distribution.area_share,
+            pressure_distribution.position,
+            pressure_distribution.preload_pressure_ratio,
+            pressure_distribution.moment_pressure_ratio,
         ]
     )
 

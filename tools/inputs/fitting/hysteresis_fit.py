@@ -292,8 +292,8 @@ def _make_loops_plot(
     line = np.concatenate(lines, axis=1)
     names = measurement.column_names
     return FitPlot(
-        data_x=motion_scale * loops.motion,
-        data_y=force_scale * loops.force,
+        measured_x=motion_scale * loops.motion,
+        measured_y=force_scale * loops.force,
         misfit=force_scale * misfit,
         law_curve=(motion_scale * line[0], force_scale * line[1]),
         axis_labels=(
@@ -324,8 +324,8 @@ def _make_response_plot(
         lines.append(np.append(np.stack([f, amplitude]), [[np.nan], [np.nan]], axis=1))
     line = np.concatenate(lines, axis=1)
     return FitPlot(
-        data_x=forced_response.frequency,
-        data_y=size * forced_response.amplitude,
+        measured_x=forced_response.frequency,
+        measured_y=size * forced_response.amplitude,
         misfit=100.0 * np.expm1(forced_response.misfit(joint_oscillator)),
         law_curve=(line[0], size * line[1]),
         axis_labels=(
@@ -350,15 +350,15 @@ def _make_decay_plots(
     x = f"amplitude of the {measurement.column_names.motion_column} [{unit}]"
     return (
         FitPlot(
-            data_x=size * a,
-            data_y=free_vibration.decay_points.frequency,
+            measured_x=size * a,
+            measured_y=free_vibration.decay_points.frequency,
             misfit=100.0 * frequency,
             law_curve=(size * grid, lines[0]),
             axis_labels=(x, "frequency [Hz]", "data / law - 1 [%]"),
         ),
         FitPlot(
-            data_x=size * a,
-            data_y=100.0 * free_vibration.decay_points.damping_ratio,
+            measured_x=size * a,
+            measured_y=100.0 * free_vibration.decay_points.damping_ratio,
             misfit=100.0 * damping,
             law_curve=(size * grid, 100.0 * lines[1]),
             axis_labels=(x, "damping ratio [%]", "data - law [%]"),

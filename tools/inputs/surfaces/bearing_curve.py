@@ -85,7 +85,9 @@ def gaussian_mean_excess(share: Array) -> Array:
 
 
 def skewed_tail_ratio(skewness: float) -> float:
-    """Ratio `tail_ratio` [1] of lognormal heights with a given skewness; 1 for a skewness of 0.
+    """Tail height over rms height [1] of lognormal heights with a given skewness, see `tail_ratio`.
+
+    The result is 1 for a skewness of 0.
 
     For a negative skewness the lognormal heights are mirrored: pits below a flat top.
     """

@@ -158,15 +158,15 @@ class _ExchangeSimulation:
             value = first if first == last else (1.0 - fraction) * first + fraction * last
             self.instance.set_values({name: value})
 
-    def _write_state_nominals(self, solver_array: object, state_count: int) -> None:
+    def _write_state_nominals(self, nominals_array: object, state_count: int) -> None:
         """Write the nominal values of the states times MIN_SCALE_OVER_NOMINAL.
 
         Below these values, tolerances are absolute.
 
-        solver_array, state_count : array of the solver to be filled, and its length
+        nominals_array, state_count : array of the solver to be filled, and its length
         """
-        self.fmu.getNominalsOfContinuousStates(solver_array, state_count)
-        np.ctypeslib.as_array(solver_array, (state_count,))[:] *= MIN_SCALE_OVER_NOMINAL
+        self.fmu.getNominalsOfContinuousStates(nominals_array, state_count)
+        np.ctypeslib.as_array(nominals_array, (state_count,))[:] *= MIN_SCALE_OVER_NOMINAL
 
     def _c_callback(self, name: str) -> Callable[..., None]:
         """Make a solver callback of a C function of the FMU; its first failure is kept in `first_failure`.

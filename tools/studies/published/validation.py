@@ -89,7 +89,10 @@ def compare_point(
 
 
 def _point_error(point: PublishedPoint, value: float) -> float:
-    """Error of a computed or guessed value: relative [1], or absolute in the unit of the published number."""
+    """Error of a value with respect to a published number.
+
+    The error is relative [1], or, if `point.absolute` is True, in the unit of the published number.
+    """
     return (value - point.value) / (1.0 if point.absolute else abs(point.value))
 
 

@@ -181,7 +181,10 @@ class JointRamp:
         return 4 if self.opens_joint_per_sample else 512
 
     def __getstate__(self) -> dict[str, Any]:
-        """State for pickle: a parameter set may hold functions in its cached properties."""
+        """Attributes for pickle, with a new parameter set that has no cached properties.
+
+        Cached properties may be functions, which pickle rejects.
+        """
         stated = self.file.values_by_name
         values = assemble_parameter_set(type(self.file.values), stated, _make_unchecked)
         return {**self.__dict__, "file": replace(self.file, values=values)}

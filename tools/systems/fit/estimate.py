@@ -318,8 +318,8 @@ def _make_plot(record: Record, name: str, unit: str, misfit: Array, count: int) 
     label = f"{name} ({shown})"
     simulated = factor * (column + misfit)
     return FitPlot(
-        data_x=record.time,
-        data_y=factor * column,
+        measured_x=record.time,
+        measured_y=factor * column,
         misfit=-factor * misfit,
         law_curve=(record.time[:count], simulated[:count]),
         axis_labels=("time (s)", label, f"misfit ({shown})"),

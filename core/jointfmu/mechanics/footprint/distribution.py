@@ -141,23 +141,24 @@ MAX_PATCHES = 22
 """Largest number of friction patches of a joint [1], each with sliders."""
 
 
-def encode_nodal_field(distribution: PressureDistribution) -> dict[str, tuple[float, ...]]:
+def encode_nodal_field(pressure_distribution: PressureDistribution) -> dict[str, tuple[float, ...]]:
     """Encode points or friction patches as entries {name: values} of [field] in a parameter file."""
     rows = dict(
         zip(
             _POINT_ENTRIES,
             (
-                distribution.area_share,
-                *distribution.position.T,
-                distribution.preload_pressure_ratio,
-                distribution.moment_pressure_ratio,
+                pressure_distribution.area_share,
+                *pressure_distribution.position.T,
+                pressure_distribution.preload_pressure_ratio,
+                pressure_distribution.moment_pressure_ratio,
             ),
             strict=True,
         )
     )
-    if isinstance(distribution, FrictionPatches):
+    if isinstance(pressure_distribution, FrictionPatches):
         rows = {
-            PATCH_KEY_PREFIX + name: row for name, row in (rows | {"radius": distribution.radius}).items()
+            PATCH_KEY_PREFIX + name: row
+            for name, row in (rows | {"radius": pressure_distribution.radius}).items()
         }
     return {name: tuple(row.tolist()) for name, row in rows.items()}
 
