@@ -64,7 +64,7 @@ def make_native_definition_loader(package_name: str) -> "Callable[[], NativeDefi
 def load_equations_definition() -> "NativeDefinition":
     """Import and return the C definition of a joint whose outputs are explicit functions.
 
-    Explicit functions of parameters, inputs and states. Such a joint has no C sources of its own.
+    The functions depend on parameters, inputs and states. Such a joint has no C sources of its own.
     """
     from .native import EXPLICIT_EQUATIONS_DEFINITION
 
