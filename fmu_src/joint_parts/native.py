@@ -140,8 +140,8 @@ def _add_equations(function_graph: FunctionGraph, model: Model) -> None:
 def _add_jacobian(
     function_graph: FunctionGraph,
     model: Model,
-    values: Mapping[str, ca.SX],
-    results: Sequence[Any],
+    symbol_by_name: Mapping[str, ca.SX],
+    output_expressions: Sequence[Any],
     evaluate_residuals: Callable[..., Sequence[Any]],
 ) -> None:
     """Add two C functions for the Jacobian of the outputs with respect to inputs and states.
@@ -151,9 +151,9 @@ def _add_jacobian(
     """
     count, names = model.state_count, [v.name for v in model.outputs]
     accelerations = {name: ca.SX.sym(name) for name in names[count : count * 3 // 2]}
-    residuals = ca.vertcat(*evaluate_residuals(function_graph.joint, {**values, **accelerations}))
-    others = ca.vertcat(*map(ca.SX, [*results[:count], *results[count * 3 // 2 :]]))
-    knowns = ca.vertcat(*[*values.values()][1:])
+    residuals = ca.vertcat(*evaluate_residuals(function_graph.joint, {**symbol_by_name, **accelerations}))
+    others = ca.vertcat(*map(ca.SX, [*output_expressions[:count], *output_expressions[count * 3 // 2 :]]))
+    knowns = ca.vertcat(*[*symbol_by_name.values()][1:])
     pivots, triangle, order = ca.ldl(ca.jacobian(residuals, ca.vertcat(*accelerations.values())))
     factors = [pivots, triangle, ca.jacobian(residuals, knowns), ca.jacobian(others, knowns)]
     symbols: list[Any] = [ca.SX.sym(f"factor{k}_", factor.sparsity()) for k, factor in enumerate(factors)]
@@ -161,7 +161,7 @@ def _add_jacobian(
     rates = ca.ldl_solve(-ca.mtimes(symbols[2], seed), symbols[0], symbols[1], order)
     other_rates = ca.mtimes(symbols[3], seed)
     doc = "time, inputs, states, accelerations -> factors of the derivatives of the outputs"
-    arguments = [*values.values(), *accelerations.values()]
+    arguments = [*symbol_by_name.values(), *accelerations.values()]
     function_graph.add_function(
         "outputs_jacobian",
         doc,

@@ -34,7 +34,7 @@ class _ParameterRow(NamedTuple):
     unit: str
     allowed_values: str
     doc: str
-    kind: str
+    origin: str
     source: str
 
 

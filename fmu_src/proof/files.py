@@ -74,9 +74,9 @@ def make_reference_files(
     related: list[RelatedFile] = []
     interfaces = dict(list(_RUN_INSTRUCTIONS.items())[: 2 if is_native else 1])
 
-    def add_file(file_path: str, mime_type: str, role: str, doc: str, content: bytes) -> None:
+    def add_file(file_path: str, mime_type: str, role: str, doc: str, file_content: bytes) -> None:
         """Add a file and its entry of the manifest."""
-        members[file_path] = content
+        members[file_path] = file_content
         labels = interfaces if mime_type == standard.EXPERIMENTS_TYPE else {}
         related.append(RelatedFile(file_path, mime_type, role, doc, labels))
 
@@ -188,11 +188,13 @@ def _declare_experiment(
     return {path: content for path, content in contents.items() if path not in members}
 
 
-def _format_parameter_set(model: Model, name: str, values: Mapping[str, object]) -> bytes:
+def _format_parameter_set(model: Model, name: str, value_by_name: Mapping[str, object]) -> bytes:
     """Content of an SSV file with values of parameters and inputs of a model."""
     units = {v.name: v.unit for v in model.inputs}
     units |= {n: item.metadata.get("unit", "") for n, item in model.parameter_fields().items()}
-    return format_parameter_set(name, {n: ParameterValue(value, units[n]) for n, value in values.items()})
+    return format_parameter_set(
+        name, {n: ParameterValue(value, units[n]) for n, value in value_by_name.items()}
+    )
 
 
 def _format_manifest(related_files: Sequence[RelatedFile]) -> bytes:

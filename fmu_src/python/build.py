@@ -26,15 +26,17 @@ _ENTRY_SCRIPT_TEMPLATE_PATH = Path(__file__).with_name("entry.txt")
 """Template of the Python module that pythonfmu loads."""
 
 
-def collect_runtime_sources(kind: JointKind) -> dict[str, str]:
+def collect_runtime_sources(joint_kind: JointKind) -> dict[str, str]:
     """{path inside the private package: text} of the Python code inside an FMU; it requires only numpy.
 
     The code is the slave, the joints and all modules that they import. Imports of the public packages are
     rewritten to the private package, so FMUs of different builds can run in one process.
     """
     builtin_packages = [joint.package for joint in KINDS.values() if joint.is_builtin]
-    roots = {"jointfmu", "jointfmu_fmu_src", kind.package.partition(".")[0]}
-    files = find_imported_modules(["jointfmu_fmu_src.python.slave", *builtin_packages, kind.package], roots)
+    roots = {"jointfmu", "jointfmu_fmu_src", joint_kind.package.partition(".")[0]}
+    files = find_imported_modules(
+        ["jointfmu_fmu_src.python.slave", *builtin_packages, joint_kind.package], roots
+    )
     sources = {}
     for name, path in files.items():
         path_inside = _private_module_name(name).replace(".", "/")

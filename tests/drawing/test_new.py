@@ -116,7 +116,7 @@ def test_materials_are_physical_and_have_sources():
         assert 2000 < values["density"] < 9000
         assert 5e8 < values["H"] < 1e10
         assert all(known.source for known in material.numbers.values())
-        assert material.numbers["H"].kind == "estimate"  # of one usual state
+        assert material.numbers["H"].origin == "estimate"  # of one usual state
     names = [name for found in read_table("materials").values() for name in (found.name, *found.aliases)]
     assert len(names) == len({name.lower() for name in names})
 

@@ -567,7 +567,7 @@ def test_a_master_of_the_other_kind_needs_the_other_lag(
 
     def run(master: MasterKind, h: float) -> Array:
         thin = round(step / h)
-        return simulate_system(found, built / "fmi2", master, step=h, stop=stop)[shown][::thin]
+        return simulate_system(found, built / "fmi2", master, communication_step=h, stop=stop)[shown][::thin]
 
     exact = run(in_turn, 0.25 * step)
     scale = np.max(np.abs(exact))

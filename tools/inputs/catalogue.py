@@ -8,14 +8,14 @@ class SourcedNumber(NamedTuple):
     """Number with its origin and source.
 
     value          : [SI]
-    kind           : origin, one of parameters.ORIGINS
+    origin         : origin, one of parameters.ORIGINS
     source         : document, table or estimate that the number is taken from
     is_upper_limit : whether the number is printed as an upper limit of the quantity, not as its value
     interval       : lower and upper end of an estimate [SI]; None if unknown
     """
 
     value: float
-    kind: str
+    origin: str
     source: str
     is_upper_limit: bool = False
     interval: tuple[float, float] | None = None

@@ -292,7 +292,7 @@ class CompiledJoint(LoadedLibrary):
         return PathResult(dict(zip(self._names, (*values.T, *results.T), strict=True)), warnings)
 
 
-def _close_library(library: Any, instance: Any, logger: Any, folder: str) -> None:
+def _close_library(library: Any, instance: Any, logger: Any, library_folder: str) -> None:
     """Free the instance of a library, unload the library and remove its folder.
 
     logger : log callback of the instance; it must exist until the library is unloaded
@@ -305,7 +305,7 @@ def _close_library(library: Any, instance: Any, logger: Any, folder: str) -> Non
         _ctypes.FreeLibrary(library._handle)
     else:
         _ctypes.dlclose(library._handle)
-    shutil.rmtree(folder, ignore_errors=True)
+    shutil.rmtree(library_folder, ignore_errors=True)
 
 
 class PythonJoint:

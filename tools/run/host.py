@@ -104,9 +104,9 @@ class Instance:
         else:
             self.fmu.enterInitializationMode(startTime=start_time, stopTime=stop_time)
 
-    def set_values(self, values: Mapping[str, object]) -> None:
+    def set_values(self, value_by_name: Mapping[str, object]) -> None:
         """Set variables of the FMU, of any type, with one call for each."""
-        for name, value in values.items():
+        for name, value in value_by_name.items():
             getattr(self.fmu, f"set{self._fmi_type(name)}")([self.variables[name].valueReference], [value])
 
     def get_value(self, variable_name: str) -> Any:
@@ -156,9 +156,9 @@ class RealVariables:
             else (fmu.fmi3SetFloat64, fmu.fmi3GetFloat64)
         )
 
-    def set_values(self, *values: float) -> None:
+    def set_values(self, *value_by_name: float) -> None:
         """Set all variables of the group."""
-        self._values[:] = list(values)
+        self._values[:] = list(value_by_name)
         self._set(*self._arguments)
 
     def get_values(self) -> list[float]:
@@ -169,7 +169,7 @@ class RealVariables:
 
 @contextmanager
 def open_instance(
-    folder: str,
+    fmu_folder: str,
     model_description: "ModelDescription",
     fmu_label: str,
     log_lines: list[str],
@@ -185,9 +185,9 @@ def open_instance(
     line.
     """
     try:
-        instance = Instance(folder, model_description, "host", model_exchange, log_lines)
+        instance = Instance(fmu_folder, model_description, "host", model_exchange, log_lines)
     except Exception as error:  # fmpy raises bare Exception, ctypes its own
-        reason = " ".join(str(error.__context__ or error).replace(f"{folder}{os.sep}", "").split())
+        reason = " ".join(str(error.__context__ or error).replace(f"{fmu_folder}{os.sep}", "").split())
         raise ValueError(
             f"{fmu_label}: the library in the FMU cannot be loaded ({reason.rstrip('.')})"
         ) from None

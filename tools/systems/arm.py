@@ -245,7 +245,9 @@ def _find_gear_ratio(path: Path, name: str, drive: Mapping[str, object]) -> floa
     return float(file.values_by_name["ratio"])
 
 
-def _make_axis_sections(arm: Arm, name: str, drive: Mapping[str, object], ratio: float) -> ComponentSections:
+def _make_axis_sections(
+    arm: Arm, name: str, drive: Mapping[str, object], speed_ratio: float
+) -> ComponentSections:
     """Sections of a system file for the components of one axis of the arm."""
     k = arm.axis_names.index(name)
     link = arm.links[k]
@@ -257,7 +259,9 @@ def _make_axis_sections(arm: Arm, name: str, drive: Mapping[str, object], ratio:
     points = TorqueCurve.fit_control_points(phase, load)  # digits beyond 1e-8 N.m depend on the processor
     times = {"start": (arm.start, "s"), "duration": (arm.duration, "s")}
     return {
-        f"{name}_motor": _make_section("AngleProfile", times | {"height": (ratio * link.travel, "rad")}),
+        f"{name}_motor": _make_section(
+            "AngleProfile", times | {"height": (speed_ratio * link.travel, "rad")}
+        ),
         f"{name}_drive": dict(drive),
         f"{name}_link": _make_section(
             "RotationalInertia", {"J": (inertia, "kg.m2"), "m": (0.0, "kg"), "l": (0.0, "m")}
@@ -268,13 +272,13 @@ def _make_axis_sections(arm: Arm, name: str, drive: Mapping[str, object], ratio:
     }
 
 
-def _make_section(model: str, values: Mapping[str, tuple[float, str]]) -> dict[str, object]:
+def _make_section(model: str, derived_values: Mapping[str, tuple[float, str]]) -> dict[str, object]:
     """Section of a system file for a component with derived values.
 
-    values : {name: (value, unit)}
+    derived_values : {name: (value, unit)}
     """
     source = "kinematics and inverse dynamics of [arm]"
     return {"model": model} | {
         name: {"value": value, "unit": unit, "kind": "derived", "source": source}
-        for name, (value, unit) in values.items()
+        for name, (value, unit) in derived_values.items()
     }

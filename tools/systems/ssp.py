@@ -98,8 +98,8 @@ def format_structure(
         if version == "2.0":
             node.set("implementation", "CoSimulation")
         connectors = SubElement(node, "ssd:Connectors")
-        outputs = {(wire.source, wire.output) for wire in signals}
-        inputs = {(wire.target, wire.input) for wire in signals}
+        outputs = {(wire.source_component, wire.output) for wire in signals}
+        inputs = {(wire.target_component, wire.input) for wire in signals}
         for kind, variables, used in (("input", model.inputs, inputs), ("output", model.outputs, outputs)):
             for v in (v for v in variables if (component.name, v.name) in used):
                 connector = SubElement(connectors, "ssd:Connector", name=v.name, kind=kind, description=v.doc)
@@ -229,7 +229,7 @@ def _check_same_parameters(fmu_path: Path, parameter_file: ParameterFile) -> Non
         )
 
 
-def _list_numbers(text: str) -> dict[str, Any]:
+def _list_numbers(file_text: str) -> dict[str, Any]:
     """{structured name: value} of the text of a parameter file, without start values of inputs."""
     found: dict[str, Any] = {}
 
@@ -241,7 +241,7 @@ def _list_numbers(text: str) -> dict[str, Any]:
             elif isinstance(entry, dict):
                 add_entries(entry, f"{prefix}{name}.")
 
-    document = tomllib.loads(text)
+    document = tomllib.loads(file_text)
     add_entries({name: entry for name, entry in document.items() if name != "inputs"}, "")
     return found | {"law": document.get("law")}
 

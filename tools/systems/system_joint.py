@@ -14,13 +14,15 @@ PARAMETER_FILE_KEYS = {"parameters", "catalogue"}
 """Entries that select a parameter file: a path relative to the system file, or a name in the catalogue."""
 
 
-def load_joint_file(folder: Path, name: str, joint: str, section: Mapping[str, Any]) -> ParameterFile | None:
+def load_joint_file(
+    system_folder: Path, name: str, joint: str, section: Mapping[str, Any]
+) -> ParameterFile | None:
     """Load the parameter file that a section of a system file names for a joint.
 
-    None: the section names no file.
+    None : the section names no file.
 
-    folder : folder of the system file
-    joint  : kind of joint
+    system_folder : folder of the system file
+    joint : kind of joint
 
     Raises ValueError with one line that names the entry and what is allowed.
     """
@@ -32,7 +34,7 @@ def load_joint_file(folder: Path, name: str, joint: str, section: Mapping[str, A
             raise ValueError(f"{name}.{key} = {value!r}, expected a text")
     if "catalogue" in entries:
         return _load_catalogue_item(name, joint, entries["catalogue"])
-    return load_parameter_file(folder / entries["parameters"], joint) if entries else None
+    return load_parameter_file(system_folder / entries["parameters"], joint) if entries else None
 
 
 def _load_catalogue_item(name: str, joint: str, catalogue_item_name: str) -> ParameterFile:

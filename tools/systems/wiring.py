@@ -14,11 +14,11 @@ from .system import GROUND, Component, System
 
 
 class Signal(NamedTuple):
-    """Signal from an output of the component `source` to an input of the component `target`."""
+    """Signal from `output` of the component `source_component` to `input` of `target_component`."""
 
-    source: str
+    source_component: str
     output: str
-    target: str
+    target_component: str
     input: str
 
 

@@ -161,12 +161,12 @@ def add_faces(parameter_sheet: ParameterSheet, options: DrawingOptions) -> Heigh
         for name in ("E", "nu", "alpha"):
             known = material.numbers[name]
             parameter_sheet.add_parameter(
-                f"{prefix}.{name}", known.value, known.kind, f"{material.title}: {known.source}"
+                f"{prefix}.{name}", known.value, known.origin, f"{material.title}: {known.source}"
             )
     soft = min(pair, key=lambda material: material.numbers["H"].value)
     if options["hardness"] is None:
         known = soft.numbers["H"]
-        parameter_sheet.add_parameter("H", known.value, known.kind, f"{soft.title}: {known.source}")
+        parameter_sheet.add_parameter("H", known.value, known.origin, f"{soft.title}: {known.source}")
     else:
         parameter_sheet.add_drawing_number("H", parse_quantity("hardness", options["hardness"]))
     if options["mu"] is None:

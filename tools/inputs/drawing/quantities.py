@@ -284,24 +284,24 @@ def parse_values(option: str, text: str, *, separator: str, count: int) -> list[
     return [parse_value(option, word) for word in words]
 
 
-def _parse_value(option: str, text: str, default_unit: str | None) -> float:
+def _parse_value(option: str, number_text: str, default_unit: str | None) -> float:
     """Parse one number in the SI unit of its option."""
     quantity, flag = QUANTITIES[option], format_option_flag(option)
     unit = default_unit or quantity.unit
     example = f"expected a number in {unit}, or with its unit as in 1{unit}"
     if unit == "1":
         example = "expected a number without a unit"
-    check_separators(option, text)
-    match = NUMBER_PATTERN.fullmatch(text.strip())
+    check_separators(option, number_text)
+    match = NUMBER_PATTERN.fullmatch(number_text.strip())
     if not match:
-        raise ValueError(f"{flag} = {text!r} is not a number; {example}")
+        raise ValueError(f"{flag} = {number_text!r} is not a number; {example}")
     number, stated_unit = float(match[1]), match[2]
     try:
         value = number * _unit_size(quantity, stated_unit or unit)
     except ValueError as error:
         others = ", ".join(quantity.extra_units)
         raise ValueError(
-            f"{flag} = {text!r}: {error}; {example}{f', or in {others}' if others else ''}"
+            f"{flag} = {number_text!r}: {error}; {example}{f', or in {others}' if others else ''}"
         ) from None
     magnitude = value / _unit_size(quantity, quantity.unit)
     low, high = quantity.plausible_range
@@ -314,14 +314,14 @@ def _parse_value(option: str, text: str, default_unit: str | None) -> float:
     ):
         interval = f"are {low:g} to {high:g}" if high < math.inf else f"is at least {low:g}"
         raise ValueError(
-            f"{flag} = {text!r} is read as {magnitude:g} {quantity.unit}, plausible {interval} "
+            f"{flag} = {number_text!r} is read as {magnitude:g} {quantity.unit}, plausible {interval} "
             f"{quantity.unit}; {advice}"
         )
-    _check_limits(option, text, magnitude)
+    _check_limits(option, number_text, magnitude)
     return value
 
 
-def _check_limits(option: str, text: str, magnitude: float) -> None:
+def _check_limits(option: str, number_text: str, magnitude: float) -> None:
     """Raise ValueError if a number, in the unit of its option, is outside the limits of its quantity."""
     quantity = QUANTITIES[option]
     low, high = quantity.limits
@@ -336,7 +336,7 @@ def _check_limits(option: str, text: str, magnitude: float) -> None:
     interval = f"{lower}, {high:g}]" if high < math.inf else f"{lower}, inf)"
     unit = "" if quantity.unit == "1" else f" {quantity.unit}"
     raise ValueError(
-        f"{format_option_flag(option)} = {text!r} is outside {interval}{unit}: {quantity.meaning}"
+        f"{format_option_flag(option)} = {number_text!r} is outside {interval}{unit}: {quantity.meaning}"
     )
 
 

@@ -77,9 +77,9 @@ def find_row(table_name: str, row_name: str) -> TableRow:
     )
 
 
-def _normalise_name(text: str) -> str:
+def _normalise_name(name: str) -> str:
     """Name of a material or finish without case and hyphens, for comparisons."""
-    return text.lower().replace("-", " ").strip()
+    return name.lower().replace("-", " ").strip()
 
 
 @dataclass(frozen=True, slots=True)

@@ -54,10 +54,12 @@ class HeightSample:
         z = self.heights - self.heights.mean()
         return float(np.mean(z**order) / np.mean(z**2) ** (0.5 * order))
 
-    def split(self, count: int) -> list["HeightSample"]:
+    def split(self, sample_count: int) -> list["HeightSample"]:
         """Samples of equal size, in the order of the points of the scan."""
         pairs = zip(
-            np.array_split(self.heights, count), np.array_split(self.squared_slopes, count), strict=True
+            np.array_split(self.heights, sample_count),
+            np.array_split(self.squared_slopes, sample_count),
+            strict=True,
         )
         return [HeightSample(heights, squared_slopes) for heights, squared_slopes in pairs]
 
@@ -122,12 +124,12 @@ class BearingCurve:
     slope: Array
 
     @classmethod
-    def of_sample(cls, sample: HeightSample, points: int = 200) -> "BearingCurve":
+    def of_sample(cls, sample: HeightSample, section_count: int = 200) -> "BearingCurve":
         """Bearing curve from the MIN_SECTION_POINTS highest points to three quarters of the surface."""
         order = np.argsort(sample.heights)[::-1]
         z = sample.heights[order]
         first = min(MIN_SECTION_POINTS, z.size // 8)
-        count = np.unique(np.geomspace(first, 0.75 * z.size, points).astype(int))
+        count = np.unique(np.geomspace(first, 0.75 * z.size, section_count).astype(int))
         mean, slope = (np.cumsum(v)[count - 1] / count for v in (z, sample.squared_slopes[order]))
         return cls(count / z.size, mean - z[count - 1], np.sqrt(slope))
 
@@ -172,10 +174,10 @@ class BearingCurve:
         )
         return float(low), float(high)
 
-    def stiffness_table(self, modulus: float, points: int = 16) -> tuple[Array, Array]:
+    def stiffness_table(self, modulus: float, pressure_count: int = 16) -> tuple[Array, Array]:
         """Pressures [Pa] and stiffness [Pa/m] of the law `table`, whose stiffness is not allowed to decrease.
 
         The pressures go up to MAX_SECTION_AREA_SHARE.
         """
-        p = np.geomspace(self.pressure(modulus)[0], self.checked_pressures(modulus)[1], points)
+        p = np.geomspace(self.pressure(modulus)[0], self.checked_pressures(modulus)[1], pressure_count)
         return p, np.maximum.accumulate(self.stiffness(p, modulus))

@@ -177,10 +177,10 @@ def _fractal_result(series: ScaleSeries, law: SelfAffineLaw) -> FractalResult:
     )
 
 
-def _confidence_interval(values: Array) -> tuple[float, float, float]:
+def _confidence_interval(estimates: Array) -> tuple[float, float, float]:
     """Estimate of a quantity with its confidence interval.
 
-    values : the first is the estimate, the others are random samples of it
+    estimates : the first is the estimate, the others are random samples of it
     """
-    low, high = np.quantile(values[1:], [0.5 - 0.5 * CONFIDENCE_LEVEL, 0.5 + 0.5 * CONFIDENCE_LEVEL])
-    return float(values[0]), float(low), float(high)
+    low, high = np.quantile(estimates[1:], [0.5 - 0.5 * CONFIDENCE_LEVEL, 0.5 + 0.5 * CONFIDENCE_LEVEL])
+    return float(estimates[0]), float(low), float(high)

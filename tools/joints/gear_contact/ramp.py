@@ -15,7 +15,7 @@ from ...run.ramps.ramp import RampResult
 from ...studies.checks import integrate_logarithmically, relative_deviation
 
 
-def _check_approach(folder: Path, ramp_result: RampResult) -> tuple[str, float]:
+def _check_approach(fmu_folder: Path, ramp_result: RampResult) -> tuple[str, float]:
     """Compare the approach along the load ramp of the FMU with the integral of the law's compliance."""
     law = load_default("gear_contact").values
     assert isinstance(law, GearContactParameters)

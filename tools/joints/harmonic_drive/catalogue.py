@@ -188,7 +188,7 @@ _FRICTION_TABLE_HEADINGS = {
 
 
 def _rated_and_peak_torque(
-    torque_table: TorqueTable, series: str, size: str, ratio: str
+    torque_table: TorqueTable, series: str, drive_size: str, speed_ratio: str
 ) -> dict[str, SourcedNumber]:
     """Rated and repeated peak torque of a drive: {column: number with source}.
 
@@ -197,8 +197,8 @@ def _rated_and_peak_torque(
     if series.startswith(ACTUATOR_SERIES):
         return {}
     for other in (series, *SERIES_WITH_PUBLISHED_TORQUES):
-        if row := torque_table.get((other, size, ratio)):
-            name = f"{other}-{size}-{ratio}"
+        if row := torque_table.get((other, drive_size, speed_ratio)):
+            name = f"{other}-{drive_size}-{speed_ratio}"
             if other == series:
                 kind, ratio_to_series = "catalogue", 1.0
                 text = f"{name}: {row['source']}"
@@ -217,14 +217,14 @@ def _rated_and_peak_torque(
     return {}
 
 
-def _hysteresis_limits(series: str, size: str, ratio: float) -> dict[str, SourcedNumber]:
+def _hysteresis_limits(series: str, drive_size: str, speed_ratio: float) -> dict[str, SourcedNumber]:
     """Upper limits of hysteresis and lost motion of a drive: {column: number with source}.
 
     The limits are those of actuators of the same size, or else the largest of all actuators.
     """
-    step = "30" if ratio < 50.0 else "50" if ratio == 50.0 else "50+"
+    step = "30" if speed_ratio < 50.0 else "50" if speed_ratio == 50.0 else "50+"
     rows = [row for row in _read_table("accuracy") if row["ratio"] == step]
-    same_size = [row for row in rows if row["size"] == size]
+    same_size = [row for row in rows if row["size"] == drive_size]
     limits = {}
     for column, head in _HYSTERESIS_LIMIT_HEADINGS.items():
         row = max(same_size or rows, key=lambda row: float(row[head]))

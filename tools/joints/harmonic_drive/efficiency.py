@@ -34,7 +34,9 @@ _STEADY_PARAMETERS: Mapping[str, float] = {
 def drives_with_friction() -> list[CatalogueEntry]:
     """Drives of the catalogue with a published starting torque."""
     return [
-        item for item in list_drives() if (n := item.numbers.get("starting_torque")) and n.kind == "catalogue"
+        item
+        for item in list_drives()
+        if (n := item.numbers.get("starting_torque")) and n.origin == "catalogue"
     ]
 
 

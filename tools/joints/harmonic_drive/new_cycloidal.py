@@ -98,7 +98,7 @@ def _make_joint(options: DrawingOptions) -> NewJoint:
         file = _set_lost_motion(file, options["lost_motion"], source)
     joint = NewJoint(file, {})
     check_efficiency(options, joint)
-    guessed = ", ".join(sorted(n for n, number in numbers.items() if number.kind == "estimate"))
+    guessed = ", ".join(sorted(n for n, number in numbers.items() if number.origin == "estimate"))
     joint = replace(joint, facts=_drive_facts(joint), warnings=[f"estimated, not printed: {guessed}"])
     return joint if options["temperature"] is None else set_temperature(joint, options["temperature"])
 

@@ -134,10 +134,10 @@ def _find_catalogue_entry(parameter_file: ParameterFile) -> CatalogueEntry | Non
 
 
 def _comparison_rows(
-    model: Model, parameter_file: ParameterFile, entry: CatalogueEntry
+    model: Model, parameter_file: ParameterFile, catalogue_entry: CatalogueEntry
 ) -> Iterator[ComparisonRow]:
     """Rows that compare the numbers of a catalogue entry with the computed numbers of the drive."""
-    printed, spring = entry.numbers, HarmonicDriveSpring.tabulate(parameter_file.values)
+    printed, spring = catalogue_entry.numbers, HarmonicDriveSpring.tabulate(parameter_file.values)
     yield from _wind_up_rows(
         spring,
         printed,
@@ -148,7 +148,9 @@ def _comparison_rows(
         yield ComparisonRow(
             column, "rad", number.value, number.is_upper_limit, measured(spring), role, number.source
         )
-    known = [column for column in _FRICTION_UNITS if column in printed and printed[column].kind != "estimate"]
+    known = [
+        column for column in _FRICTION_UNITS if column in printed and printed[column].origin != "estimate"
+    ]
     bench = make_test_rig(model, parameter_file) if known else None
     for column in known:
         assert bench is not None

@@ -77,14 +77,14 @@ class Figure(NamedTuple):
     table: Sequence[Sequence[str]] = ()
 
 
-def published_series(points: Sequence[PublishedPoint], argument: str) -> list[Series]:
+def published_series(published_points: Sequence[PublishedPoint], argument: str) -> list[Series]:
     """Series of published numbers over an argument, one for each role.
 
     Marks are empty if numbers of this role are no independent check.
     """
     series = []
-    for role in dict.fromkeys(point.role for point in points):
-        chosen = [point for point in points if point.role == role]
+    for role in dict.fromkeys(point.role for point in published_points):
+        chosen = [point for point in published_points if point.role == role]
         x, y = [p.where[argument] for p in chosen], [float(p.value) for p in chosen]
         marks = "empty" if role in UNTESTED_ROLES else "full"
         series.append(Series(f"published: {ROLES[role]}", x, y, marks, titles=[p.id for p in chosen]))

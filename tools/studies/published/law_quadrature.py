@@ -273,9 +273,9 @@ def _yu2022(p: Parameters, largest: float) -> dict[str, float]:
         """Area of a spot over the area at which a spot of its curvature yields first [1]."""
         return a / (f1 * pi * radius(a) * yield_deformation(a))
 
-    def stage_end_area(limit: float) -> float:
+    def stage_end_area(max_area_ratio: float) -> float:
         """Spot area [m2] at which `area_ratio` reaches a limit: the end of a stage."""
-        return exp(brentq(lambda t: log(area_ratio(exp(t)) / limit), -250.0, 250.0, xtol=1e-13))
+        return exp(brentq(lambda t: log(area_ratio(exp(t)) / max_area_ratio), -250.0, 250.0, xtol=1e-13))
 
     geometric = p["plastic_area"] == "geometric"
     (m1, n1, *_), (m2, n2, *_) = _FIRST_STAGE, _SECOND_STAGE

@@ -54,16 +54,18 @@ class UncertaintyProblem:
         """Units of the load and of the outputs: {variable: unit}."""
         return {self.ramped_input.name: self.ramped_input.unit, **self.units}
 
-    def list_runs(self, points: Array) -> list[dict[str, Any]]:
+    def list_runs(self, unit_cube_points: Array) -> list[dict[str, Any]]:
         """Settings of the runs for points (n, d) of the unit cube."""
-        samples = draw_samples(self.uncertain_parameters, points)
+        samples = draw_samples(self.uncertain_parameters, unit_cube_points)
         rows = zip(*(column.tolist() for column in samples.values()), strict=True)
         return [{**self.settings, **dict(zip(samples, row, strict=True))} for row in rows]
 
-    def study_record(self, count: int, seed: int) -> dict[str, Any]:
+    def study_record(self, sample_count: int, seed: int) -> dict[str, Any]:
         """JSON object that identifies the study, for its folder."""
-        distributions = {parameter.name: parameter.text for parameter in self.uncertain_parameters}
-        counts = {"samples": count, "seed": seed}
+        distributions = {
+            parameter.name: parameter.distribution_text for parameter in self.uncertain_parameters
+        }
+        counts = {"samples": sample_count, "seed": seed}
         return {**self.identifying_record, **counts, "parameters": {**distributions, **self.settings}}
 
 
@@ -178,9 +180,13 @@ def _check_uncertain(parameter: UncertainParameter, parameter_field: Any) -> Non
     parameter_field : dataclass field that declares the parameter
     """
     if "allowed" in parameter_field.metadata:
-        raise ValueError(f"{parameter.name} = {parameter.text}: is a named choice and cannot be uncertain")
+        raise ValueError(
+            f"{parameter.name} = {parameter.distribution_text}: is a named choice and cannot be uncertain"
+        )
     if parameter_field.metadata["whole"]:
-        raise ValueError(f"{parameter.name} = {parameter.text}: is a whole number and cannot be uncertain")
+        raise ValueError(
+            f"{parameter.name} = {parameter.distribution_text}: is a whole number and cannot be uncertain"
+        )
     for value in (
         *(end for end in parameter.support if np.isfinite(end)),
         float(parameter.distribution.median()),
@@ -189,26 +195,26 @@ def _check_uncertain(parameter: UncertainParameter, parameter_field: Any) -> Non
             value == 0.0 and parameter.support[0] == 0.0 and parameter_field.metadata["interval"].low == 0.0
         )
         if not tolerated and (text := find_problem(parameter.name, value, parameter_field)):
-            raise ValueError(f"{parameter.name} = {parameter.text}: {text}")
+            raise ValueError(f"{parameter.name} = {parameter.distribution_text}: {text}")
 
 
 def _ramp_loads(
     curves: LoadCurves,
-    values: object,
+    parameter_set: object,
     single_load: object,
     ramp_end: float | None,
-    points: int,
+    load_count: int,
     uncertain_load: UncertainParameter | None,
 ) -> Array:
     """Loads (m): a ramp from 0 to `ramp_end`, or the single load that was set.
 
-    values         : parameter set
+    parameter_set  : parameter set
     single_load    : the load that was set, or None
     uncertain_load : distribution of the load, or None
 
     Raises ValueError for a load outside of the tabulated law, or a wrong ramp.
     """
-    allowed = Interval.from_bounds(gt=0.0, le=curves.max_load(values))
+    allowed = Interval.from_bounds(gt=0.0, le=curves.max_load(parameter_set))
     if single_load is not None:
         if ramp_end is not None:
             raise ValueError(
@@ -226,9 +232,9 @@ def _ramp_loads(
                 text = f"{curves.load.name} = {value:g} {curves.load.unit}"
                 raise ValueError(f"{text} is outside {allowed}: {LOAD_INTERVAL_MEANING}")
         return np.array([float(single_load)])
-    end = curves.default_end(values) if ramp_end is None else ramp_end
+    end = curves.default_end(parameter_set) if ramp_end is None else ramp_end
     if not allowed.contains(end):
         raise ValueError(f"to = {end:g} {curves.load.unit} is outside {allowed}: {LOAD_INTERVAL_MEANING}")
-    if not 2 <= points <= 10_000:
-        raise ValueError(f"points = {points} is outside [2, 10000]: points of the ramp")
-    return np.linspace(0.0, end, points)
+    if not 2 <= load_count <= 10_000:
+        raise ValueError(f"points = {load_count} is outside [2, 10000]: points of the ramp")
+    return np.linspace(0.0, end, load_count)

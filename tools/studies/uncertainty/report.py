@@ -27,9 +27,9 @@ def select_table_loads(uncertainty_problem: UncertaintyProblem) -> list[float]:
     ]
 
 
-def _select_table_indices(values: Any) -> Any:
+def _select_table_indices(ramp_values: Any) -> Any:
     """Indices of at most MAX_TABLE_ROWS equally spaced values of a ramp."""
-    return np.unique(np.linspace(0, values.size - 1, MAX_TABLE_ROWS).astype(int))
+    return np.unique(np.linspace(0, ramp_values.size - 1, MAX_TABLE_ROWS).astype(int))
 
 
 def format_bands_csv(uncertainty_problem: UncertaintyProblem, bands: Bands) -> str:
@@ -69,7 +69,8 @@ def study_to_json(
     return {
         "fmu" if uncertainty_problem.title.endswith(".fmu") else "joint": uncertainty_problem.title,
         "parameters": {
-            parameter.name: parameter.text for parameter in uncertainty_problem.uncertain_parameters
+            parameter.name: parameter.distribution_text
+            for parameter in uncertainty_problem.uncertain_parameters
         },
         "load": {"name": load.name, "unit": load.unit, "values": bands.loads.tolist()},
         "samples": bands.sample_count,
@@ -118,7 +119,8 @@ def format_table(
     if sensitivity is not None:
         lines += _indices_table(uncertainty_problem, sensitivity, bands.nonzero_outputs)
     varied = ", ".join(
-        f"{parameter.name} = {parameter.text}" for parameter in uncertainty_problem.uncertain_parameters
+        f"{parameter.name} = {parameter.distribution_text}"
+        for parameter in uncertainty_problem.uncertain_parameters
     )
     lines.append(f"over {uncertainty_problem.ramped_input.name}: {uncertainty_problem.ramped_input.doc}")
     lines.append(f"varied: {varied}{'' if bands.has_scatter else ': no output depends on it'}")

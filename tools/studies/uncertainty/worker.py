@@ -70,18 +70,18 @@ def run_job(job: tuple[RampEvaluator, Path, Sequence[Run]]) -> list[Entry]:
     return [evaluator.run(index, settings) for index, settings in runs]
 
 
-def _failed_entry(index: int, settings: Settings, error: str) -> Entry:
+def _failed_entry(run_number: int, settings: Settings, error: str) -> Entry:
     """Journal entry of a run that failed: its settings and the error message."""
     return {
-        "run": index,
+        "run": run_number,
         "parameters": dict(settings),
         "error": replace_unprintable(error)[:MAX_TEXT_LENGTH],
     }
 
 
-def killed_entry(index: int, settings: Settings) -> Entry:
+def killed_entry(run_number: int, settings: Settings) -> Entry:
     """Journal entry of a run whose process died."""
-    return _failed_entry(index, settings, KILLED_RUN_MESSAGE)
+    return _failed_entry(run_number, settings, KILLED_RUN_MESSAGE)
 
 
 @dataclass(frozen=True, slots=True)

@@ -100,9 +100,11 @@ def frame_cells(frame_geometry: BoltedFrame) -> tuple[Array, Array]:
         solid &= np.hypot(x - bx, y - by) > 0.5 * frame_geometry.hole_diameter * EDGE_TOLERANCE_FACTOR
     area = 4.0 * outer[0] * outer[1] / solid.size
 
-    def sum_cell_values(values: Array) -> Array:
+    def sum_cell_values(subdivision_values: Array) -> Array:
         """Sum the values of the subdivisions of each cell."""
-        blocks = (values * solid).reshape(count[0], _CELL_SUBDIVISIONS, count[1], _CELL_SUBDIVISIONS)
+        blocks = (subdivision_values * solid).reshape(
+            count[0], _CELL_SUBDIVISIONS, count[1], _CELL_SUBDIVISIONS
+        )
         return np.asarray(blocks.sum(axis=(1, 3)).ravel())
 
     points = sum_cell_values(np.ones_like(x))

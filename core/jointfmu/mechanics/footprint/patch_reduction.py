@@ -168,9 +168,9 @@ def _divide_nodes_among_patches(
         len(patch_centres),
     )
 
-    def sum_over_nodes(values: Array) -> Array:
+    def sum_over_nodes(node_values: Array) -> Array:
         """Sum values (n) of the nodes over the nodes of each patch."""
-        return np.asarray(np.bincount(nearest, values, count))
+        return np.asarray(np.bincount(nearest, node_values, count))
 
     for _ in range(LLOYD_ITERATIONS):
         square = (x - patch_centres[:, :1]) ** 2 + (y - patch_centres[:, 1:]) ** 2

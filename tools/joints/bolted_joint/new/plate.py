@@ -177,10 +177,10 @@ def make_joint(options: DrawingOptions) -> NewJoint:
             "the FMU is the interface alone; for the complete joint state --thickness of both plates"
         )
     facts |= {**tightening.facts(), **joint.facts, **_preload_range_facts(joint.file)}
-    if tightening.has_range and not tightening.low > loss:
+    if tightening.has_range and not tightening.min_force > loss:
         warnings.append(
-            f"embedding takes {loss:.4g} N, but the preload may be {tightening.low:.4g} N: the joint may be "
-            "loose"
+            f"embedding takes {loss:.4g} N, but the preload may be {tightening.min_force:.4g} N: the joint "
+            "may be loose"
         )
     return NewJoint(joint.file, facts, [*warnings, *joint.warnings])
 
@@ -368,7 +368,7 @@ def _add_thermal_parameters(parameter_sheet: ParameterSheet, clamped_bolt: Clamp
     """
     steel = find_row("materials", "steel")
     alpha, text = steel.numbers["alpha"], "bolts of steel" + (" with washers" if clamped_bolt.washers else "")
-    parameter_sheet.add_parameter("bolt.alpha", alpha.value, alpha.kind, f"{text}: {alpha.source}")
+    parameter_sheet.add_parameter("bolt.alpha", alpha.value, alpha.origin, f"{text}: {alpha.source}")
     plates = 1.0 / (1.0 / clamped_bolt.member_stiffness - clamped_bolt.washer_compliance)
     text = "VDI 2230, 1/delta_P" + (" without the washers" if clamped_bolt.washers else "")
     parameter_sheet.add_parameter("plate_stiffness", plates, "derived", text)

@@ -115,7 +115,7 @@ def fit_contact_pair_law(
     rated = sourced_numbers["rated_torque"]
     origin = sourced_numbers["T1"].source
     file = drive.resize_drive(
-        file, catalogue_row.rated, TABLE_END_OVER_RATED_TORQUE, rated.kind, rated.source
+        file, catalogue_row.rated, TABLE_END_OVER_RATED_TORQUE, rated.origin, rated.source
     )
     if "ratio" in sourced_numbers:
         file = file.with_values({"ratio": sourced_numbers["ratio"].value}, "catalogue", origin)

@@ -120,7 +120,7 @@ def change_law(
         k: p.value for k, p in sourced_numbers.items()
     }
     kinds = {k: v for k, v in start_file.origins.items() if k in shared} | {
-        k: p.kind for k, p in sourced_numbers.items()
+        k: p.origin for k, p in sourced_numbers.items()
     }
     sources = {k: v for k, v in start_file.sources.items() if k in shared}
     sources |= {k: p.source for k, p in sourced_numbers.items()}

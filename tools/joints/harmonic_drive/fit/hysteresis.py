@@ -165,10 +165,10 @@ IGNORED_FIRST_SAMPLES = 10
 """Number of first samples that are ignored, because the history of the hysteresis is unknown there."""
 
 
-def measured_wind_up(samples: Samples, ratio: float) -> Array:
+def measured_wind_up(samples: Samples, speed_ratio: float) -> Array:
     """Wind-up (n) [rad] between joint and motor, minus its mean. The motor angle may have either sign."""
     sense = np.sign(np.dot(samples.q - samples.q.mean(), samples.motor_angle - samples.motor_angle.mean()))
-    angle = samples.q - sense * samples.motor_angle / abs(ratio)
+    angle = samples.q - sense * samples.motor_angle / abs(speed_ratio)
     return np.asarray(angle - angle.mean())
 
 

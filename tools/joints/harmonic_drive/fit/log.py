@@ -572,11 +572,11 @@ def _load_picture(samples: Samples) -> FitPlot:
     )
 
 
-def _constant_friction_torque(earlier_samples: Samples, later_samples: Samples, ratio: float) -> Array:
+def _constant_friction_torque(earlier_samples: Samples, later_samples: Samples, speed_ratio: float) -> Array:
     """Motor torque (n) [N.m] of later samples, by a model with constant friction fitted to earlier ones."""
     models = []
     for samples in (earlier_samples, later_samples):
-        terms = LinearTorqueTerms.evaluate_at_samples(samples, ratio)
+        terms = LinearTorqueTerms.evaluate_at_samples(samples, speed_ratio)
         models.append(
             (
                 np.concatenate([np.ones((samples.dq.size, 1)), terms.design_matrix], axis=1),

@@ -271,7 +271,10 @@ def read_table(path: Path, renamed_columns: Mapping[str, tuple[str, str | None]]
 
 
 def make_log(
-    table: columns.Columns, torque_constant: float | None, drive: DriveParameters, torque_at: str = "motor"
+    log_columns: columns.Columns,
+    torque_constant: float | None,
+    drive: DriveParameters,
+    torque_at: str = "motor",
 ) -> MeasuredLog:
     """Make the samples of a robot's log from its columns.
 
@@ -281,7 +284,7 @@ def make_log(
 
     Raises ValueError with a one-line message that begins with the path.
     """
-    path, have = table.path, dict(table.columns)
+    path, have = log_columns.path, dict(log_columns.columns)
     if torque_at == "joint" and "tau" in have:
         if "link_torque" in have:
             raise ValueError(
@@ -289,16 +292,16 @@ def make_log(
                 "expected one of them"
             )
         have["link_torque"] = have.pop("tau")
-    torque = _motor_torque(table, have, torque_constant)
+    torque = _motor_torque(log_columns, have, torque_constant)
     has_motor_torque = torque is not None
     if torque is None:
-        torque = _joint_torque(table, have, torque_at) / abs(drive.ratio)
-    if "temperature" in have and table.units["temperature"] != "K":
+        torque = _joint_torque(log_columns, have, torque_at) / abs(drive.ratio)
+    if "temperature" in have and log_columns.units["temperature"] != "K":
         have["temperature"] = have["temperature"] + CELSIUS_ZERO_IN_KELVIN
     if "time" in have:
-        samples = _read_dynamic_log(table, have, torque, drive)
+        samples = _read_dynamic_log(log_columns, have, torque, drive)
     else:
-        table.require_column("dq", COLUMN_UNITS)
+        log_columns.require_column("dq", COLUMN_UNITS)
         samples = make_steady_speed_samples(have, torque)
         _check_speeds(path, samples, drive)
     _check_motor_torque(path, samples, drive, torque_constant)
