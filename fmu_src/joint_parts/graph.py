@@ -161,7 +161,7 @@ def make_symbols(symbol_prefix: str, symbol_count: int) -> list[ca.SX]:
 
 
 def collect_parameter_limits(joint: object) -> list[ParameterLimit]:
-    """Limits of those parameters whose allowed interval depends on other parameters."""
+    """Collect the limits of the parameters whose allowed interval depends on other parameters."""
     own = joint.find_parameter_limits() if hasattr(joint, "find_parameter_limits") else []
     table = joint.find_table_parameter_limits() if hasattr(joint, "find_table_parameter_limits") else []
     return [*own, *table]
@@ -229,7 +229,7 @@ def _split_regimes(spot_distribution: SpotDistribution) -> tuple[list[Number], l
         return next(i for i, known in enumerate(ends) if known is bound_log_area)
 
     def split_term(term: RegimeTerm, regime_index: int) -> list[RegimeTerm]:
-        """Terms that are active in one range of log-areas, for a term of the whole law."""
+        """Reduce a term of the whole law to the terms that are active in one range of log-areas."""
         if not isinstance(term, SmoothTerm):
             return [term]
         if find_bound_index(term.upper_log_area) < regime_index:

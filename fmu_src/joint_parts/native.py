@@ -87,7 +87,7 @@ INTEGER_CONSTANT_NAMES: ModuleConstants = {curve: ("MAX_STEP_COUNT_FACTOR",), in
 def define_constants(
     real_constant_names: ModuleConstants, integer_constant_names: ModuleConstants
 ) -> CDefinitions:
-    """C definitions of constants of Python modules, {module: names}: real numbers and integers."""
+    """Define C constants for constants of Python modules, {module: names}: real numbers and integers."""
     count_values, number_values = (
         {name: getattr(module, name) for module, names in names_by_module.items() for name in names}
         for names_by_module in (integer_constant_names, real_constant_names)
@@ -179,7 +179,7 @@ def _add_jacobian(
 
 
 def _define_jacobian_size(function_graph: FunctionGraph, model: Model) -> CDefinitions:
-    """Constant with the number of factors that the C function `outputs_jacobian` computes."""
+    """Define the C constant with the number of factors that the C function `outputs_jacobian` computes."""
     sizes = [len(f.result_expressions) for f in function_graph.functions if f.name == "outputs_jacobian"]
     return CDefinitions({"N_JACOBIAN": sizes[0]} if sizes else {})
 

@@ -117,7 +117,7 @@ def list_shipped_variants(
 
 @cache
 def _load_shipped_files(joint_name: str, folder: Path) -> tuple[ParameterFile, ...]:
-    """Parameter files of a joint in a folder, and in the catalogue of bought joints."""
+    """Read the parameter files of a joint in a folder, and in the catalogue of bought joints."""
     folders = [folder, Path(str(files("jointfmu_models") / "catalogue"))]
     paths = sorted(path for source in folders if source.is_dir() for path in source.glob("*.toml"))
     joint_paths = [

@@ -27,7 +27,7 @@ _ENTRY_SCRIPT_TEMPLATE_PATH = Path(__file__).with_name("entry.txt")
 
 
 def collect_runtime_sources(joint_kind: JointKind) -> dict[str, str]:
-    """{path inside the private package: text} of the Python code inside an FMU; it requires only numpy.
+    """Collect the Python code inside an FMU: {path inside the private package: text}; it requires only numpy.
 
     The code is the slave, the joints and all modules that they import. Imports of the public packages are
     rewritten to the private package, so FMUs of different builds can run in one process.

@@ -329,7 +329,7 @@ def _resolve_alias(
     allowed_units: Mapping[str, UnitSizes],
     aliases: Mapping[str, Sequence[str]],
 ) -> str:
-    """Column that a heading means: the one that has the name as an alias and allows the unit.
+    """Find the column that a heading means: the column that has the name as an alias and allows the unit.
 
     If there is none: the name itself.
     """

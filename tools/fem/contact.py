@@ -295,7 +295,7 @@ def nodal_displacement_matrix(
 
 
 def _select_supports(body: ElasticBody, stop_all_motions: bool) -> IndexArray:
-    """Three unknowns of a body that stop its rigid-body motions in the contact plane.
+    """Select three unknowns of a body that stop its rigid-body motions in the contact plane.
 
     stop_all_motions : add three unknowns that stop the motion along z and the rotations about x and y.
         Without these three, the body rests on the contact.

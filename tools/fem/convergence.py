@@ -144,7 +144,7 @@ def first_equivalent_bolts(bolt_positions: Array, has_moment: bool) -> NDArray[n
 
 
 def check_bolt_symmetry(contact_field: ContactField, bolt_positions: Array, has_moment: bool) -> list[str]:
-    """Warning if the peak pressures around equivalent bolts differ by more than MAX_PEAK_DIFFERENCE.
+    """List a warning if the peak pressures around equivalent bolts differ by over MAX_PEAK_DIFFERENCE.
 
     Returns a list of one message, or an empty list.
     """

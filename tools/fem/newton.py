@@ -105,7 +105,7 @@ class ContactEnergy:
         )
 
     def _apply_tangent(self, contact_stiffness: Array, displacement: Array) -> Array:
-        """Tangent times displacement u: (K + T^T diag(k) T) u, with the contact stiffness k (q) [N/m]."""
+        """Multiply the tangent by u: (K + T^T diag(k) T) u, with the contact stiffness k (q) [N/m]."""
         return np.asarray(
             self.stiffness_matrix @ displacement
             + self.approach_matrix.T @ (contact_stiffness * (self.approach_matrix @ displacement))

@@ -220,7 +220,7 @@ def _make_rings(quadrilaterals: Array, bolts: Array, radii: Array) -> Array:
 
 
 def _merge_nodes(quadrilaterals: Array) -> tuple[Array, IndexArray]:
-    """Points (2, n) [m] and cells (4, m) of quadrilaterals (2, 4, m) [m] that share nodes."""
+    """Merge the nodes of quadrilaterals (2, 4, m) [m] to shared points (2, n) [m] and cells (4, m)."""
     count = quadrilaterals.shape[2]
     points = quadrilaterals.reshape(2, -1)
     pairs = cKDTree(points.T).query_pairs(MERGE_DISTANCE, output_type="ndarray")

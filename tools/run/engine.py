@@ -183,7 +183,7 @@ class LoadedLibrary:
         self._booleans = {name for name, item in fields.items() if "allowed" in item.metadata}
         messages = self._messages
 
-        def log(environment: Any, status: int, category: bytes, message: bytes) -> None:
+        def log(environment: Any, status: int, message_category: bytes, message: bytes) -> None:
             """Callback of the instance: store its log message."""
             messages.append((status, message.decode("utf-8", "replace")))
 

@@ -89,10 +89,10 @@ class Instance:
         callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(free)
         self.fmu.instantiate(callbacks=callbacks, loggingOn=logging)
 
-    def _log(self, status: int, category: bytes | None, message: bytes) -> None:
+    def _log(self, status: int, message_category: bytes | None, message: bytes) -> None:
         """Callback of the FMU: store a log message."""
         shown = message.decode("utf-8", "replace")
-        self.messages.append(LogMessage(status, shown, (category or b"").decode("utf-8", "replace")))
+        self.messages.append(LogMessage(status, shown, (message_category or b"").decode("utf-8", "replace")))
         if status:
             self._log_lines.append(" ".join(shown.split()))
 

@@ -198,7 +198,7 @@ def _evaluate_loops(
 
 
 def fit_masing_law(loop: loops.HysteresisLoop, viscous_damping: float) -> HysteresisLaw:
-    """Hysteresis law that follows Masing's rule, from a simulated loop.
+    """Fit a hysteresis law that follows Masing's rule to a simulated loop.
 
     Its branch is the mean of both branches of the loop.
     """

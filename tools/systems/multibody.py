@@ -402,9 +402,9 @@ def _dot(a: Sequence[Number], b: Sequence[Number]) -> Number:
     return sum(terms[1:], terms[0]) if terms else 0.0
 
 
-def _is_zero(x: Number) -> bool:
+def _is_zero(number: Number) -> bool:
     """Whether a Number is a constant zero, not a symbol."""
-    return isinstance(x, float) and x == 0.0
+    return isinstance(number, float) and number == 0.0
 
 
 def _add(a: Sequence[Number], b: Sequence[Number]) -> Vector:

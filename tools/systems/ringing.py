@@ -159,7 +159,7 @@ class VibrationTest:
 
 
 def load_vibration_test(joint: str) -> VibrationTest:
-    """Vibration test of a kind of joint; raises ValueError if the joint defines none."""
+    """Import the vibration test of a kind of joint; raises ValueError if the joint defines none."""
     tool_module = load_tool_module(KINDS[joint], "ringing")
     if tool_module is None:
         joints = [name for name, kind in KINDS.items() if load_tool_module(kind, "ringing")]

@@ -201,7 +201,7 @@ def build_systems(
             if component.base_file and not component.has_own_fmu:
                 for version in FMI_VERSIONS:
                     _check_same_parameters(out / f"fmi{version}" / f"{fmu}.fmu", component.base_file)
-    build_versions = partial(_build_versions, out, variability)
+    build_versions = partial(_build_fmi_versions, out, variability)
     fmu_paths = map_jobs(
         pool, build_versions, "build FMUs of systems", [*built_components], [*built_components.values()]
     )
@@ -246,7 +246,7 @@ def _list_numbers(file_text: str) -> dict[str, Any]:
     return found | {"law": document.get("law")}
 
 
-def _build_versions(out: Path, variability: str, fmu_name: str, component: Component) -> list[Path]:
+def _build_fmi_versions(out: Path, variability: str, fmu_name: str, component: Component) -> list[Path]:
     """Build the FMU of a system's component for all FMI versions, which share the compiled model.
 
     Returns the files.

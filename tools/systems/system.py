@@ -166,7 +166,7 @@ class System:
 def _scale_partner(
     partner: Component, rating_before: FlangeRating, rating_after: FlangeRating, joint_name: str
 ) -> Component:
-    """Partner (body or load) scaled from the rated values of one joint to the rated values of another joint.
+    """Scale a partner (body or load) from the rated values of one joint to the rated values of another joint.
 
     Loads scale with the rated load, inertias with the rated load over the motion of the flange. The permanent
     load `ramp_height` also changes by the difference of the friction of both joints.
@@ -192,7 +192,7 @@ def list_system_names() -> tuple[str, ...]:
 
 
 def load_systems() -> dict[str, System]:
-    """{name: system} of all shipped systems."""
+    """Read all shipped systems: {name: system}."""
     return {name: load_system(name) for name in list_system_names()}
 
 

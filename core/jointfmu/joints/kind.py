@@ -14,7 +14,7 @@ class RoughSurface:
     """Surface of a joint; its fractal parameters `PREFIX.D`, `PREFIX.G` can be fitted to measured heights.
 
     is_areal  : True: D_s and G_s of the surface; False: D and G of a profile
-    direction : direction of the profile on a textured surface, "x" or "y"; None: the one of less scatter
+    direction : direction of the profile on a textured surface, "x" or "y"; None: direction of less scatter
     """
 
     parameter_prefix: str

@@ -44,7 +44,7 @@ def series_field(unit: str, doc: str, *, optional: bool = False, **bounds: float
 
 
 def describe_range(numbers: Sequence[float]) -> str:
-    """Text with the count, the smallest and the largest of some numbers: "3 numbers from 1 to 5"."""
+    """Describe numbers by their count, the smallest and the largest: "3 numbers from 1 to 5"."""
     return f"{len(numbers)} numbers from {min(numbers):.6g} to {max(numbers):.6g}" if len(numbers) else "none"
 
 

@@ -167,7 +167,7 @@ def assemble_parameter_set(
 
 
 def _group_sections(group_field: Field[object], default_type: object) -> dict[str, type[object]]:
-    """File sections that a group of parameters may have: {section name: class}.
+    """List the file sections that a group of parameters may have: {section name: class}.
 
     default_type : declared type of the field of the group
     """
@@ -175,7 +175,7 @@ def _group_sections(group_field: Field[object], default_type: object) -> dict[st
 
 
 def _select_section(sections: Iterable[str], prefix: str, parameter_names: Collection[str]) -> str:
-    """Alternative of a group that the parameter names belong to; the first one if no name belongs to any.
+    """Select the alternative of a group that the parameter names belong to; the first one if none matches.
 
     Raises ValueError, which lists the names, if they belong to two alternatives.
     """

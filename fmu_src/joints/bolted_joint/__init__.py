@@ -38,7 +38,7 @@ _ONE_POINT_FIELD = {"share": (1.0,), "x": (0.0,), "y": (0.0,), "equal": (1.0,), 
 
 
 def _convert_parameters(joint: AnyBoltedJoint) -> Mapping[str, object]:
-    """Parameter values with which the C code is generated: one contact point, mean positions of the bolts."""
+    """Convert the parameters for the C code generation: one contact point, mean positions of the bolts."""
     own = {
         name: value
         for name, value in replace_points(joint).items()
@@ -121,7 +121,7 @@ def _pressure_transfer_table(force_shares: Any) -> Any:
 
 
 def _encode_modal_rows(modal_rows: Any) -> Any:
-    """Modal displacements of the members in units of the last decimal, with zeros up to MAX_MODES modes."""
+    """Encode modal displacements of the members in units of the last decimal; zeros up to MAX_MODES modes."""
     return np.pad(
         np.round(modal_rows * 10.0**MODAL_DISPLACEMENT_DECIMALS),
         ((0, 0), (0, MAX_MODES - modal_rows.shape[1])),
@@ -149,7 +149,7 @@ _CURVE_POINT_COUNT = 13
 
 
 def _draw_friction_loops(spring: Any, ramp_end_preload: float) -> list[chart.Panel]:
-    """Charts of friction loops with several amplitudes, and of their loss factor over the amplitude.
+    """Draw friction loops with several amplitudes, and their loss factor over the amplitude.
 
     ramp_end_preload : preload at the end of the load ramp [N]
     """

@@ -108,14 +108,14 @@ def _make_log_rows() -> Iterator[list[float]]:
     """
     for interval in range(TABLE_INTERVALS):
         begin, end = (LOG_TABLE_START_BITS + (k << LOG_MANTISSA_BITS) for k in (interval, interval + 1))
-        middle = 0.5 * (_double_from_bits(begin) + _double_from_bits(end))
+        middle = 0.5 * (_convert_bits_to_double(begin) + _convert_bits_to_double(end))
         inverse = 1.0 if begin <= _BIT_PATTERN_OF_ONE < end else round(2.0**16 / middle) * 2.0**-16
         log = -Decimal(inverse).ln()
         high = _round_to_bits(log, 42)
         yield [inverse, high, float(log - Decimal(high))]
 
 
-def _double_from_bits(bit_pattern: int) -> float:
+def _convert_bits_to_double(bit_pattern: int) -> float:
     """Positive double with a given bit pattern."""
     return float.fromhex(f"0x1.{bit_pattern & ((1 << 52) - 1):013x}p{(bit_pattern >> 52) - 1023}")
 

@@ -204,7 +204,7 @@ def _judge_export(args: argparse.Namespace, parameter_file: ParameterFile) -> Pl
 
 
 def _create_export(args: argparse.Namespace, parameter_file: ParameterFile) -> "ExportedFile":
-    """Content of the exported file, from the options."""
+    """Create the content of the exported file from the options."""
     import numpy as np
 
     from ...exchange.export import writing

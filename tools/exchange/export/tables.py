@@ -63,7 +63,7 @@ def tabulate_law(curve: Curve, max_error: float) -> LoadTable:
 def fit_row_limit(
     tabulate: Callable[[float], LoadTable], min_error: float, max_rows: int
 ) -> tuple[float, LoadTable]:
-    """Smallest error [1], with two digits, whose table has at most `max_rows` rows; and this table.
+    """Find the smallest error [1], with two digits, whose table has at most `max_rows` rows; and this table.
 
     tabulate  : (largest relative error [1]) -> table; a larger error gives fewer rows
     min_error : an error [1], a power of ten, whose table has more rows
@@ -176,12 +176,12 @@ def decimate_curve(
 
 
 def _interpolation_errors(
-    rows: Array, displacement: Array, load: Array, stiffness: Array, min_reference: tuple[float, float]
+    table_rows: Array, displacement: Array, load: Array, stiffness: Array, min_reference: tuple[float, float]
 ) -> tuple[tuple[float, float], tuple[float, float]]:
     """Largest relative errors of load and stiffness: with linear interpolation, with the monotone cubic."""
-    which = np.clip(np.searchsorted(rows[:, 0], displacement, side="right") - 1, 0, len(rows) - 2)
-    slope = np.array([(b[1] - a[1]) / (b[0] - a[0]) for a, b in pairwise(rows)])[which]
-    cubic = PchipInterpolator(rows[:, 0], rows[:, 1])
+    which = np.clip(np.searchsorted(table_rows[:, 0], displacement, side="right") - 1, 0, len(table_rows) - 2)
+    slope = np.array([(b[1] - a[1]) / (b[0] - a[0]) for a, b in pairwise(table_rows)])[which]
+    cubic = PchipInterpolator(table_rows[:, 0], table_rows[:, 1])
 
     def largest_error(interpolated_values: Array, exact_values: Array, min_reference_value: float) -> float:
         """Largest error of interpolated values, relative to the values or to a smallest reference [1]."""
@@ -190,7 +190,7 @@ def _interpolation_errors(
         return float(np.max(np.abs(interpolated_values - exact_values)[positive] / size[positive]))
 
     straight = (
-        largest_error(np.interp(displacement, rows[:, 0], rows[:, 1]), load, min_reference[0]),
+        largest_error(np.interp(displacement, table_rows[:, 0], table_rows[:, 1]), load, min_reference[0]),
         largest_error(slope, stiffness, min_reference[1]),
     )
     return straight, (

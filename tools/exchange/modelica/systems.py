@@ -25,7 +25,7 @@ _NOMINAL_STATE_VALUES = {"phi": "1e-3", "w": "0.1", "s": "1e-6", "v": "1e-3"}
 """{state: nominal value [SI]} of bodies."""
 _WEIGHT_PARAMETERS = ("m", "l")
 """Parameters of a rotational inertia that become parameters of a component `LinkWeight`."""
-_COLUMN_SPACING, _ROW_SPACING = 30, 30
+_DIAGRAM_COLUMN_SPACING, _DIAGRAM_ROW_SPACING = 30, 30
 """Distances on the diagram: between columns of components, and between rows."""
 
 RecordLookup = Callable[[str, ParameterFile, tuple[float, ...]], ModelicaRecord | None]
@@ -63,8 +63,8 @@ def render_system_model(
         """Declare a component; it is placed to the right of its component `neighbour`."""
         x, y = positions[neighbour or name]
         if neighbour:
-            x += _COLUMN_SPACING
-            y -= _ROW_SPACING * sum(
+            x += _DIAGRAM_COLUMN_SPACING
+            y -= _DIAGRAM_ROW_SPACING * sum(
                 (declared.diagram_x, declared.diagram_y) == (x, y) for declared in declarations
             )
         declarations.append(ComponentDeclaration(component_type, name, ", ".join(modifications), x, y))
@@ -260,7 +260,7 @@ def _diagram_positions(
     order = list(system.components)
     chains.sort(key=lambda chain: min(map(order.index, chain)))
     return {
-        name: (_COLUMN_SPACING * column * 2 - 80, 80 - _ROW_SPACING * row)
+        name: (_DIAGRAM_COLUMN_SPACING * column * 2 - 80, 80 - _DIAGRAM_ROW_SPACING * row)
         for row, chain in enumerate(chains)
         for column, name in enumerate(sorted(chain, key=order.index))
     }

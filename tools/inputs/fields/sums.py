@@ -149,7 +149,7 @@ class LoadCaseSums:
     sum_scales: Array
 
     def select_load_cases(self, selected_cases: NDArray[np.intp] | NDArray[np.bool_]) -> "LoadCaseSums":
-        """Sums in the load cases that a mask or indices select."""
+        """Select the sums of some load cases, by a mask or by indices."""
         loads = tuple(self.load_cases[i] for i in np.arange(len(self.load_cases))[selected_cases])
         return LoadCaseSums(
             loads,

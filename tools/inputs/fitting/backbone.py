@@ -187,7 +187,7 @@ def _separate_hysteresis(
 
 
 def _fit_friction_torque(torque: Array, angle: Array, direction: Array) -> float:
-    """Friction torque [N.m]: half the torque difference of rising and falling branches at equal angles.
+    """Fit the friction torque [N.m]: half the torque difference of both branches at equal angles.
 
     direction : +1 (rising) or -1 (falling) for each sample (n)
 

@@ -151,7 +151,7 @@ class Loops:
         return np.asarray(end & is_flat)
 
     def find_slip_steps(self) -> list["SlipStep"]:
-        """Find the turning points between two branches with flat ends."""
+        """Find the force steps at turning points between two branches that both end in full slip."""
         flat = [
             np.flatnonzero(self.branch_index == k)[self._flat_samples(k)]
             for k in range(self.start_motion.size)
@@ -422,7 +422,7 @@ def find_reversals(signal: Array, prominence: float) -> NDArray[np.int64]:
 
 
 def refine_turning_point(motion: Array, sample_index: int, motion_noise: float) -> float:
-    """Motion at the turning point at sample `sample_index`: vertex of a parabola through the nearest samples.
+    """Refine the motion at a turning point: vertex of a parabola through the samples next to `sample_index`.
 
     motion_noise : standard deviation of the noise of the motion
 

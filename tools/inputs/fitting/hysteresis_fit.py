@@ -137,7 +137,7 @@ def fit_measurement(
         return lambda values: model.residuals(data, values, residual_scale)
 
     def apply_exchange(residual_function: Residuals) -> Residuals:
-        """Residual function with the stiffness at rest in place of the exchanged unknown."""
+        """Make the residual function in which the stiffness at rest replaces the exchanged unknown."""
         if exchange is None:
             return residual_function
         current, start = exchange, original[exchange.exchanged_name].start_value

@@ -55,7 +55,7 @@ class HeightSample:
         return float(np.mean(z**order) / np.mean(z**2) ** (0.5 * order))
 
     def split(self, sample_count: int) -> list["HeightSample"]:
-        """Samples of equal size, in the order of the points of the scan."""
+        """Split the sample into samples of equal size, in the order of the points of the scan."""
         pairs = zip(
             np.array_split(self.heights, sample_count),
             np.array_split(self.squared_slopes, sample_count),
@@ -70,7 +70,7 @@ def tail_ratio(sample: HeightSample) -> float:
 
 
 def add_surfaces(first: HeightSample, second: HeightSample) -> HeightSample:
-    """Heights of the gap of two statistically independent surfaces, from random pairs of their points."""
+    """Add the heights of two statistically independent surfaces at random pairs of points."""
     rng = np.random.default_rng(0)
     i, j = (rng.integers(sample.heights.size, size=RANDOM_PAIRS) for sample in (first, second))
     return HeightSample(

@@ -104,13 +104,17 @@ def identify(
     )
 
 
-def make_two_sided_series(series: ScaleSeries) -> ScaleSeries:
+def make_two_sided_series(one_sided_series: ScaleSeries) -> ScaleSeries:
     """Series of the equivalent surface of two sides with the same finish, from the series of one side."""
-    return replace(series, value=2.0 * series.value, structure_or_psd=2.0 * series.structure_or_psd)
+    return replace(
+        one_sided_series,
+        value=2.0 * one_sided_series.value,
+        structure_or_psd=2.0 * one_sided_series.structure_or_psd,
+    )
 
 
 def add_series(first_series: ScaleSeries, second_series: ScaleSeries) -> ScaleSeries:
-    """Series of the equivalent surface of two surfaces: the sum of both over their common range of scales.
+    """Add the series of two surfaces over their common range of scales, for the equivalent surface.
 
     Raises ValueError if fewer than four scales are common.
     """

@@ -130,7 +130,7 @@ def _with_fractal_parameters(
 
 
 def _describe_files(identified_surface: Identification) -> str:
-    """Names of the scanned files and the sides that they represent, as text."""
+    """Name the scanned files and the sides that they represent, as text."""
     if len(identified_surface.file_names) == 2:
         return (
             f"{identified_surface.file_names[0]} and {identified_surface.file_names[1]} (equivalent surface)"
@@ -146,7 +146,7 @@ def _describe_files(identified_surface: Identification) -> str:
 
 
 def _describe_fit(identified_surface: Identification, fractal_result: FractalResult) -> str:
-    """Text for the source of a parameter: files, method and range of scales of a result."""
+    """Describe files, method and range of scales of a result, for the source of a parameter."""
     methods = {"structure": "structure function, lags", "psd": "power spectral density, wavelengths"}
     return (
         f"identified from {_describe_files(identified_surface)} by {methods[fractal_result.method]} "
@@ -157,7 +157,7 @@ def _describe_fit(identified_surface: Identification, fractal_result: FractalRes
 def _describe_source(
     identified_surface: Identification, fractal_result: FractalResult, surface: RoughSurface, symbol: str
 ) -> str:
-    """Text for the source of D or G: files, method, direction and confidence interval."""
+    """Describe files, method, direction and confidence interval, for the source of D or G."""
     D, G = _dimension_and_roughness(fractal_result, surface)
     estimate = D if symbol == "D" else G
     if surface.is_areal:

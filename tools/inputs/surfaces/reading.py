@@ -234,7 +234,7 @@ def unit_size(unit: str) -> float:
 def _convert_heights(
     path: Path, topography: Any, side_lengths: Any, heights: Array, unit_size: float
 ) -> Heights:
-    """Heights of SurfaceTopography as profile or areal map with axes (y, x), missing points as NaN.
+    """Convert heights of SurfaceTopography to a profile, or a map with axes (y, x); missing points are NaN.
 
     unit_size : unit of the heights and side lengths [m]
     """

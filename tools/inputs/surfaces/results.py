@@ -161,7 +161,7 @@ class Identification:
         return self.scans[0].longest_wave
 
     def select_best_result(self, direction: str | None = None, method: str | None = None) -> FractalResult:
-        """Best result in a direction (None: the whole surface): self-affine, smallest standard error of D.
+        """Select the best result in a direction (None: any): self-affine, smallest standard error of D.
 
         A result with D at an end of its interval comes last, because its standard error is not valid.
         """
@@ -171,7 +171,7 @@ class Identification:
         )
 
     def select_results_in_direction(self, direction: str | None = None) -> list[FractalResult]:
-        """Results of all methods in a direction (None: the whole surface)."""
+        """Select the results of all methods in a direction (None: the whole surface)."""
         direction = direction or self.results[0].direction
         return [r for r in self.results if r.direction == direction]
 

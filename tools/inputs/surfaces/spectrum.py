@@ -50,7 +50,7 @@ class ScaleSeries:
     covariance: Callable[[float], Array]
 
     def select_scales(self, selection: NDArray[Any]) -> "ScaleSeries":
-        """Series at the selected scales, by mask or indices."""
+        """Select scales of the series by mask or indices; returns a new series."""
         return replace(
             self,
             scale=self.scale[selection],

@@ -87,7 +87,7 @@ class SvgDrawing:
         self.add_element("polygon", points=" ".join(f"{a:.1f},{b:.1f}" for a, b in corners), fill=RED)
 
     def render(self, label: str) -> str:
-        """Text of the SVG file with a label for screen readers."""
+        """Render the picture as text of an SVG file, with a label for screen readers."""
         head = (
             f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {self.width:.0f} {self.height:.0f}" '
             f'width="{self.width:.0f}" role="img" aria-label="{escape(label)}" font-size="13" '
@@ -98,7 +98,7 @@ class SvgDrawing:
 
 
 def draw_plan(joint: AnyBoltedJoint, preload: float, moment: float) -> str:
-    """Plan view of the tightened interface from side 2, as SVG: pressure, numbered bolts, attachments.
+    """Draw the plan of the tightened interface from side 2 as SVG: pressure, bolts, attachments.
 
     preload : [N] of each bolt
     moment  : [N.m]
@@ -250,7 +250,7 @@ def _draw_bolts(
 
 
 def draw_section(joint: AnyBoltedJoint) -> str:
-    """Section of both sides, as SVG: thicknesses, bolts, and surfaces at which the load is applied."""
+    """Draw the section of both sides as SVG: thicknesses, bolts, surfaces where the load is applied."""
     bodies = joint.bodies
     assert isinstance(bodies, ElasticBodies)
     layout, attached = PlaneLayout.from_joint(joint), _attachment_name(joint)

@@ -269,7 +269,7 @@ def _read_table(table_name: str) -> list[dict[str, str]]:
 
 
 def _join_name(drive_name: str) -> str:
-    """Name of a drive without separators between its parts, for comparisons."""
+    """Join the parts of a drive's name without separators, for comparisons."""
     return drive_name.replace("-", "")
 
 

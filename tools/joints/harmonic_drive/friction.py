@@ -118,7 +118,7 @@ def scale_friction(
 def _scale_torque(
     design_matrix: Array, torque_logarithms: Array, design_row: Array, torque_factor: float
 ) -> ScaledNumber:
-    """Torque [N.m] from a linear regression of its logarithm, times a factor.
+    """Estimate a torque [N.m] by linear regression of its logarithm, times a factor.
 
     design_matrix, torque_logarithms : (n, k), (n) data of the regression
     design_row : (k) of the drive
@@ -295,7 +295,7 @@ def rated_efficiency(drive: DriveParameters, temperature: float = REFERENCE_TEMP
 def collect_published_friction(
     catalogue_entries: Iterable[CatalogueEntry],
 ) -> dict[str, tuple[PublishedFriction, str]]:
-    """Published friction {drive: (friction, maker)} of all drives with a published starting torque."""
+    """Collect the friction {drive: (friction, maker)} of all drives with a published starting torque."""
     found = {}
     for item in catalogue_entries:
         printed = {name: number for name, number in item.numbers.items() if number.origin == "catalogue"}

@@ -52,7 +52,7 @@ def compute_through_fmu(published_point: PublishedPoint, fmu_folder: Path) -> fl
     where = published_point.where
 
     def run_drive(output_name: str, **settings: float) -> float:
-        """Output of the FMU under the torque of the point, with other parameters."""
+        """Run the FMU with other parameters at the torque of the published point; returns one output."""
         torque = where["torque"]
         fmu = fmu_folder / "HarmonicDriveCompliance.fmu"
         return float(ramp.run_ramp(fmu, "tau", torque, torque, settings).columns[output_name][-1])

@@ -78,7 +78,7 @@ class LoadHistory:
         largest = loop.amplitude
 
         def force_range(amplitude: float) -> float:
-            """Range of the output force in a load cycle with an amplitude."""
+            """Largest minus smallest force [unit of the output] in a load cycle with an amplitude."""
             points = self.loop_inputs[loop.input_name] + np.array([0.0, amplitude])
             return float(
                 np.ptp(self._compute_along_path(loop.input_name, points, {}).columns[conjugate_output])

@@ -148,7 +148,7 @@ class _ExchangeSimulation:
         return left_limits != new
 
     def _set_time(self, time: float) -> None:
-        """Set the time [s] and the continuous inputs of the FMU."""
+        """Set the time [s] of the FMU, and its continuous inputs to their values at this time."""
         self.fmu.setTime(time)
         i = self.interval_index
         begin, end = self.task.times[i : i + 2]

@@ -225,7 +225,7 @@ class RelatedFiles:
         return settings
 
     def _resolve_path(self, base_member: str, source_address: str) -> str:
-        """Path in the FMU of a source address, which is relative to the file `base_member` in the FMU."""
+        """Resolve a source address relative to the file `base_member` in the FMU, to a path in the FMU."""
         if urlsplit(source_address).scheme:
             raise ValueError(f"{self.fmu}: {base_member} names {source_address}; expected a file in the FMU")
         return posixpath.normpath(posixpath.join(posixpath.dirname(base_member), unquote(source_address)))

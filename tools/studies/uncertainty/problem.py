@@ -136,7 +136,7 @@ def state_problem(
 
 
 def _load_interval(curves: LoadCurves, file: ParameterFile) -> str:
-    """Range of the load as text LOW..HIGH, without the part of the load that the joint loses.
+    """Range of the load as text LOW..HIGH, less the part of the load that the joint loses (by embedding).
 
     Raises ValueError if the file states no range for the start value of the load, or if the joint loses all.
     """

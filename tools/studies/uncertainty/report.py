@@ -19,7 +19,7 @@ MAX_TABLE_ROWS = 6
 
 
 def select_table_loads(uncertainty_problem: UncertaintyProblem) -> list[float]:
-    """Loads above zero of the ramp that the printed table shows."""
+    """Select the loads above zero of the ramp that the printed table shows."""
     return [
         float(load)
         for load in uncertainty_problem.loads[_select_table_indices(uncertainty_problem.loads)]
@@ -28,7 +28,7 @@ def select_table_loads(uncertainty_problem: UncertaintyProblem) -> list[float]:
 
 
 def _select_table_indices(ramp_values: Any) -> Any:
-    """Indices of at most MAX_TABLE_ROWS equally spaced values of a ramp."""
+    """Select at most MAX_TABLE_ROWS equally spaced values of a ramp; returns their indices."""
     return np.unique(np.linspace(0, ramp_values.size - 1, MAX_TABLE_ROWS).astype(int))
 
 

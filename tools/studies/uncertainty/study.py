@@ -243,7 +243,7 @@ def read_study(path: str | Path) -> dict[str, object]:
 
 
 def merge_settings(path: Path | None, stated_settings: Sequence[tuple[str, object]]) -> dict[str, object]:
-    """Settings {name: value} of a study file, if there is one, replaced by the stated settings."""
+    """Merge the settings {name: value} of a study file with stated settings, which take precedence."""
     return (read_study(path) if path else {}) | dict(stated_settings)
 
 

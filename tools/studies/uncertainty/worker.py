@@ -239,7 +239,7 @@ class JointRamp:
             columns[quantity.variable.name] = column
         return columns
 
-    def _evaluate_outputs(self, sample: "_Sample", loads: Array, rows: Array) -> dict[str, Array]:
+    def _evaluate_outputs(self, sample: "_Sample", loads: Array, load_indices: Array) -> dict[str, Array]:
         """Outputs of the FMU at the selected loads; along a long ramp they are interpolated by splines.
 
         The splines interpolate log(output) over log(load), or output/load if the output has zeros.
@@ -247,19 +247,21 @@ class JointRamp:
         name, count = self.curves.load.name, self.curves.knot_count
         loaded = loads[loads > 0.0]
         if count is None or loaded.size <= count:
-            found = sample.follow({name: loads[rows]})
+            found = sample.follow({name: loads[load_indices]})
             return {v.name: found[v.name] for v in self.curves.outputs}
         knots = np.geomspace(loaded[0], loaded[-1], count)
         found = sample.follow({name: np.append(0.0, knots)})
-        is_loaded, columns = loads[rows] > 0.0, {}
-        weights = spline_weights(np.log(knots / knots[-1]), np.log(loads[rows][is_loaded] / knots[-1]))
+        is_loaded, columns = loads[load_indices] > 0.0, {}
+        weights = spline_weights(
+            np.log(knots / knots[-1]), np.log(loads[load_indices][is_loaded] / knots[-1])
+        )
         for variable in self.curves.outputs:
             values = found[variable.name]
-            column = np.full(rows.size, values[0])
+            column = np.full(load_indices.size, values[0])
             if np.all(values[1:] > 0.0):
                 column[is_loaded] = np.exp(weights @ np.log(values[1:]))
             else:
-                column[is_loaded] = loads[rows][is_loaded] * (weights @ (values[1:] / knots))
+                column[is_loaded] = loads[load_indices][is_loaded] * (weights @ (values[1:] / knots))
             columns[variable.name] = column
         return columns
 

@@ -357,7 +357,7 @@ class BoltedJointSpring:
         friction_update: FrictionUpdate,
         total_loss: float,
     ) -> Array:
-        """History variables at relative displacement q (6) and modal coordinates a (k) [m].
+        """Join the history variables at displacement q (6) and modal coordinates a (k) [m] to one array.
 
         total_loss : [J] energy dissipated so far
         """

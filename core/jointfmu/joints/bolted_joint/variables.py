@@ -51,7 +51,7 @@ def _read_vector(inputs: VariableValues, vector_name: str) -> tuple[float, float
 def _advance_spring(
     spring: BoltedJointSpring, inputs: VariableValues, history: Any
 ) -> tuple[Mapping[str, float], Any]:
-    """Outputs and new history variables of a joint after a straight path to the inputs {name: value}."""
+    """Compute outputs and new history variables after a straight path to the inputs {name: value}."""
     q = np.array([*_read_vector(inputs, "s_rel"), *_read_vector(inputs, "theta")])
     rates = (*_read_vector(inputs, "v_rel"), *_read_vector(inputs, "omega"))
     return spring.advance(
@@ -91,7 +91,7 @@ def _make_model_variant(model: Model, joint: AnyBoltedJoint) -> Model:
 
 
 def _add_bolt_force_outputs(model: Model, joint: AnyBoltedJoint) -> Model:
-    """Model with the bolt forces as outputs, if the members are elastic.
+    """Add the bolt forces to the outputs of a model, if the members are elastic.
 
     Then all outputs depend on all motions, except the viscous damping of the interface.
     """

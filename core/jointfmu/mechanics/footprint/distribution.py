@@ -44,7 +44,7 @@ class PressureDistribution:
         return cls(share, np.column_stack([x, y]), *others)
 
     def select_nodes(self, node_indices: "slice | NDArray[np.intp]") -> "PressureDistribution":
-        """Distribution at a subset of the nodes, with unchanged shares."""
+        """Select a subset of the nodes, with unchanged shares; returns a new distribution."""
         return PressureDistribution(
             self.area_share[node_indices],
             self.position[node_indices],

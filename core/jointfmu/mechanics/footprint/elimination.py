@@ -21,7 +21,7 @@ CORRECTION_TOLERANCE = 1e-7
 
 
 def reduce_weights(node_values: Array, weights: Array) -> Array:
-    """New weights (n), at most d of them nonzero, with the same weighted sums of values (n, d).
+    """Reduce to at most d nonzero weights (n) that have the same weighted sums of values (n, d).
 
     weights : (n) >= 0
     """

@@ -184,7 +184,7 @@ def _sum_over_groups(node_groups: NodeIndices, node_values: Array) -> Array:
 
 
 def _scale_positions(pressure_distribution: PressureDistribution) -> tuple[Array, Array]:
-    """Coordinates x and y (n) of the nodes over their largest absolute values [1]."""
+    """Divide coordinates x and y (n) of the nodes by their largest absolute values [1]."""
     x, y = (
         values / max(float(np.max(np.abs(values))), np.finfo(float).tiny)
         for values in pressure_distribution.position.T

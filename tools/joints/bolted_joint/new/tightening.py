@@ -184,7 +184,7 @@ def _scatter(preload: AssemblyPreload, method: TighteningMethod) -> AssemblyPrel
 def _check_strength(
     options: DrawingOptions, preload: AssemblyPreload, thread: Thread, thread_friction: float
 ) -> AssemblyPreload:
-    """Assembly preload with its utilisation of the yield strength, and a warning if this is too high.
+    """Add the utilisation of the yield strength to an assembly preload, and a warning if it is too high.
 
     A preload above the proof load is warned of by `common.pressure`.
 

@@ -36,7 +36,7 @@ class BoltWashers:
         return self.count * self.washer.thickness
 
     def describe(self) -> str:
-        """Number, sizes and source of the washers in words."""
+        """Describe number, sizes and source of the washers in words."""
         sizes = f"{self.washer.outer_diameter * 1e3:g} x {self.washer.thickness * 1e3:g} mm"
         return f"{'two washers' if self.count == 2 else 'a washer'} of {sizes} ({self.source})"
 

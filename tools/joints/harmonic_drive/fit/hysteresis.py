@@ -134,7 +134,7 @@ def fit(
 def _set_start_hysteresis(
     parameter_file: ParameterFile, fitted_names: Sequence[str]
 ) -> tuple[ParameterFile, float]:
-    """Start parameters with non-zero hysteresis, and K_WTS [N.m/rad] at zero torque.
+    """Set non-zero hysteresis in the start parameters; also returns K_WTS [N.m/rad] at zero torque.
 
     The fit needs non-zero values, because its unknowns are logarithms.
     """
@@ -315,7 +315,7 @@ def _hysteresis_torque(spring: HarmonicDriveSpring, wind_up_path: Array) -> Arra
 
 
 def _insert_turning_points(wind_up_path: Array) -> tuple[Array, NDArray[np.int_]]:
-    """Path (n) with its turning points inserted, and indices (n) of the samples in the longer path.
+    """Insert its turning points into a path (n); also returns the indices (n) of the samples in the new path.
 
     A turning point between samples is the vertex of a parabola.
     """

@@ -324,7 +324,7 @@ def _check_rotor_inertia(rotor_inertia: float, fitted_log: FittedLogFriction) ->
 def _fit_rotor_inertia(
     parameter_file: ParameterFile, log_samples: Samples, fitted_log: FittedLogFriction
 ) -> tuple[float, float] | None:
-    """Rotor inertia and its standard deviation [kg.m2]; None if the log does not determine them."""
+    """Fit the rotor inertia and its standard deviation [kg.m2]; None if the log does not determine them."""
     if parameter_file.law != "catalogue":
         return None
     square = fitted_log.drive.ratio**2
@@ -343,9 +343,9 @@ def _fit_stiffness(
 ) -> tuple[tuple[Solution, FitPlot] | None, list[str]]:
     """Fit stiffness and hysteresis to a log with the motor angle.
 
-    fitted_log : gives the load of a log without a torque sensor
+    fitted_log : fitted friction, from which the load follows if the log has no torque sensor
 
-    Returns solution and picture, or None if there is no such fit; and notes.
+    Returns (solution, picture), or None if the log cannot be fitted; and notes.
     """
     if fitted_names and not any(name in hysteresis.ROBOT_LOG_FITTED_PARAMETERS for name in fitted_names):
         return None, []
@@ -602,7 +602,7 @@ _NO_LOAD_LABEL, _TEMPERATURE_LABEL = "friction without load [mN m]", "temperatur
 
 
 def draw_pictures(samples: Samples, fitted_log: FittedLogFriction) -> Iterator[FitPlot]:
-    """Pictures of the friction over speed, time and temperature, as far as the log has these columns."""
+    """Draw the friction over speed, time and temperature, as far as the log has these columns."""
     braked, torque = fitted_log.evaluate_torque(samples)
     misfit = samples.motor_torque - torque
     measured = braked + misfit

@@ -78,7 +78,7 @@ class Samples:
         return bool(np.all(np.isfinite(self.sensor_torque)))
 
     def select_samples(self, sample_selection: NDArray[np.bool_] | SampleIndices) -> "Samples":
-        """Samples of the logs that a mask or indices select."""
+        """Select samples of the logs by a mask or indices."""
         return Samples(*(getattr(self, field.name)[sample_selection] for field in fields(self)))
 
 

@@ -103,7 +103,7 @@ def fitted_ripples(fitted_log: FittedLogFriction, harmonics: Sequence[int]) -> l
 def add_ripples(
     parameter_file: ParameterFile, ripples: Sequence[Ripple], source: str, confidence_level: float
 ) -> tuple[ParameterFile, FitFacts, list[str]]:
-    """Parameter file with the ripples, facts about them, and notes.
+    """Add the friction ripples to a parameter file; returns the file, facts about the ripples, and notes.
 
     source           : source of the parameters, without their intervals
     confidence_level : confidence level of the intervals [1]

@@ -54,7 +54,7 @@ def fit(
     rated_torque: float | None = None,
     law: str | None = None,
 ) -> FitResult:
-    """Fit a file with the columns torque and angle (COLUMN_UNITS), in the order of measurement.
+    """Fit a drive to a measured file with the columns torque and angle (COLUMN_UNITS), in measured order.
 
     An offset of the angle is a further unknown, which is fitted and subtracted.
 
