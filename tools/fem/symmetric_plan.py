@@ -34,13 +34,13 @@ ELEMENTS_AROUND_BOLT = 12
 """Number of elements around a bolt at refinements up to 1; 16 if axes of symmetry cross in the bolt."""
 FIRST_SIZE_AT_HEADS = 0.2
 """Size of the elements at the edges of a rigid head over the width of its bearing ring [1]; refinement 1."""
-RING_GROWTH = 1.5
+SUCCESSIVE_RING_WIDTH_RATIO = 1.5
 """Ratio of the widths of two successive rings between hole and edge of the head [1]."""
-OUTER_RING_GROWTH = 2.0
+SUCCESSIVE_OUTER_RING_WIDTH_RATIO = 2.0
 """Ratio of the widths of two successive rings outside of the head [1]."""
-OUTER_RINGS_WIDTH = 1.4
+OUTER_RINGS_WIDTH_OVER_BEARING_RING_WIDTH = 1.4
 """Width of the rings outside of the head over the width of its bearing ring [1]."""
-MAX_CLEARANCE_SHARE = 0.5
+MAX_OUTER_RINGS_WIDTH_OVER_CLEARANCE = 0.5
 """Largest width of the rings outside of the head over the clearance to the next edge or head [1]."""
 SIZE_GROWTH_AROUND_RINGS = 0.8
 """Growth of the elements outside of graded rings, see `set_element_sizes` [1]."""
@@ -110,10 +110,17 @@ def _ring_radii(assembly: Assembly, refinement: float, graded_heads: bool) -> Ar
     if not graded_heads:
         return np.array([hole, head])
     first = first_size_at_heads(assembly, refinement)
-    half = graded_levels(0.5 * (head - hole), first, RING_GROWTH)
+    half = graded_levels(0.5 * (head - hole), first, SUCCESSIVE_RING_WIDTH_RATIO)
     inside = np.concatenate([hole + half, head - half[-2::-1]])
-    width = min(OUTER_RINGS_WIDTH * (head - hole), MAX_CLEARANCE_SHARE * clearance)
-    outside = graded_levels(width, first, OUTER_RING_GROWTH)[1:] if width > 0.5 * first else np.zeros(0)
+    width = min(
+        OUTER_RINGS_WIDTH_OVER_BEARING_RING_WIDTH * (head - hole),
+        MAX_OUTER_RINGS_WIDTH_OVER_CLEARANCE * clearance,
+    )
+    outside = (
+        graded_levels(width, first, SUCCESSIVE_OUTER_RING_WIDTH_RATIO)[1:]
+        if width > 0.5 * first
+        else np.zeros(0)
+    )
     return np.concatenate([inside, head + outside])
 
 

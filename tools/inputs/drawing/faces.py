@@ -80,7 +80,7 @@ DEFAULT_RMS_SLOPE = 0.1
 """Rms slope [1] of a surface if only its height is known."""
 DEFAULT_HURST_EXPONENT = 0.8
 """Hurst exponent [1] of a surface if only its height is known."""
-DEFAULT_FREQUENCY_RATIO = 1.5
+DEFAULT_WAVE_FREQUENCY_RATIO = 1.5
 """Frequency ratio gamma of neighbouring waves of the Weierstrass-Mandelbrot function [1]."""
 RZ_OVER_RA, RZ_OVER_RA_LIMITS = 6.25, (4.0, 10.0)
 """Ratio Rz/Ra of machined faces [1] and its range: Rz 10 um for Ra 1.6 um, as on drawings; turned faces have
@@ -257,7 +257,9 @@ def _add_fractal_parameters(parameter_sheet: ParameterSheet) -> None:
     D, text = 2.0 - hurst, f"rms height {h:.3g} m of all waves up to {wave:g} m"
     parameter_sheet.add_parameter("surface.D", D, "estimate", f"2 - H with the Hurst exponent {hurst:g}")
     parameter_sheet.add_parameter("surface.G", fractal_roughness(D, h, wave), "derived", text)
-    parameter_sheet.add_parameter("surface.gamma", DEFAULT_FREQUENCY_RATIO, "estimate", "the usual value")
+    parameter_sheet.add_parameter(
+        "surface.gamma", DEFAULT_WAVE_FREQUENCY_RATIO, "estimate", "the usual value"
+    )
 
 
 def fractal_roughness(D: float, h: float, longest_wave: float) -> float:

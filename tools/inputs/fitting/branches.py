@@ -32,26 +32,26 @@ RELATIVE_ROUNDING = 1e-9
 motions over their range."""
 MIN_COMMON_OVER_LONGER_MOTION_RANGE = 0.9
 """Motion range common to two branches over range of the longer branch [1], from which they close a loop."""
-RISING_FORCE_FRACTION = 0.9
+RISING_OVER_BRANCH_FORCE_CHANGE = 0.9
 """Force change since the turning point over change of the whole branch [1], up to which a branch counts as
 rising. Beyond it a slipped branch is flat."""
-FLAT_FRACTION, MAX_FLAT_RISE = 0.3, 0.05
+FLAT_END_OVER_MOTION_RANGE, MAX_FLAT_RISE_OVER_BRANCH_RISE = 0.3, 0.05
 """Last part of a branch over its range of motion [1], and rise of the force over this part, relative to the
 force change of the branch [1], up to which the branch counts as slipping."""
 MIN_FLAT_SAMPLES = 3
 """Minimum number of samples on the flat end of a branch."""
 BEARING_INTERVALS = 12
 """Number of equal parts of a branch that show whether its stiffness rises again."""
-MIN_BEARING_RISE, MIN_BEARING_SLOPE_RATIO = 0.2, 3.0
+MIN_BEARING_RISE_OVER_BRANCH_RISE, MIN_BEARING_OVER_SOFTEST_STIFFNESS = 0.2, 3.0
 """Rise of the force after the softest part over rise of the branch [1], and stiffness there over stiffness
 of the softest part [1], from which a joint bears after slip."""
-MIN_BEARING_NOISE = 8.0
+MIN_STIFFNESS_RISE_OVER_DEVIATION = 8.0
 """Rise of a branch's stiffness over its standard deviation [1], from which a joint bears after slip."""
 MIN_RISING_SAMPLES = 5
 """Number of samples on the rising part of a branch from which its stiffness counts as resolved."""
 _AREA_INTEGRATION_POINTS = 200
 """Number of points of the grid for the area between two branches [1]."""
-_MAX_REST_ITERATIONS, _REST_DIFFERENCE_STEP = 6, 1e-4
+_MAX_REST_ITERATIONS, _REST_DIFFERENCE_STEP_OVER_MOTION_RANGE = 6, 1e-4
 """Gauss-Newton iterations for the rest position, and half the difference step over the motion's range [1]."""
 
 
@@ -118,7 +118,7 @@ class Loops:
         slopes = []
         for k in range(self.start_motion.size):
             distance, change = self.branch_curve(k)
-            rising = int(np.argmax(change >= RISING_FORCE_FRACTION * np.max(change)))
+            rising = int(np.argmax(change >= RISING_OVER_BRANCH_FORCE_CHANGE * np.max(change)))
             if (rising >= MIN_RISING_SAMPLES) is not is_resolved:
                 continue
             if is_resolved:
@@ -143,11 +143,13 @@ class Loops:
     def _flat_samples(self, branch_number: int) -> NDArray[np.bool_]:
         """Mask (n) of the samples of a branch on its flat end; all false if its end is not flat."""
         distance, change = self.branch_curve(branch_number)
-        end = distance >= (1.0 - FLAT_FRACTION) * np.max(distance)
+        end = distance >= (1.0 - FLAT_END_OVER_MOTION_RANGE) * np.max(distance)
         if np.count_nonzero(end) < MIN_FLAT_SAMPLES:
             return np.zeros_like(end)
         slope = float(np.polyfit(distance[end], change[end], 1)[0])
-        is_flat = abs(slope) * FLAT_FRACTION * np.max(distance) < MAX_FLAT_RISE * np.max(change)
+        is_flat = abs(slope) * FLAT_END_OVER_MOTION_RANGE * np.max(
+            distance
+        ) < MAX_FLAT_RISE_OVER_BRANCH_RISE * np.max(change)
         return np.asarray(end & is_flat)
 
     def find_slip_steps(self) -> list["SlipStep"]:
@@ -196,11 +198,13 @@ class Loops:
             later = softest + int(np.argmax(slopes[softest:]))
             noise = noise_deviation(change) * np.sqrt(2.0 / np.min(counts)) / np.min(np.diff(x))
             if (
-                y[-1] - y[softest + 1] > MIN_BEARING_RISE * y[-1]
-                and slopes[later] > MIN_BEARING_SLOPE_RATIO * slopes[softest]
-                and slopes[later] - slopes[softest] > MIN_BEARING_NOISE * noise
+                y[-1] - y[softest + 1] > MIN_BEARING_RISE_OVER_BRANCH_RISE * y[-1]
+                and slopes[later] > MIN_BEARING_OVER_SOFTEST_STIFFNESS * slopes[softest]
+                and slopes[later] - slopes[softest] > MIN_STIFFNESS_RISE_OVER_DEVIATION * noise
             ):
-                limit = slopes[softest] + (slopes[later] - slopes[softest]) / MIN_BEARING_SLOPE_RATIO
+                limit = (
+                    slopes[softest] + (slopes[later] - slopes[softest]) / MIN_BEARING_OVER_SOFTEST_STIFFNESS
+                )
                 return float(np.sum(np.diff(x)[slopes < limit])), float(y[softest + 1])
         return None
 
@@ -256,8 +260,11 @@ class Loops:
         middle = 0.5 * float(np.max(self.motion) + np.min(self.motion))
         position = min((0.0, middle), key=lambda rest: float(np.sum(misfit(rest) ** 2)))
         for _ in range(_MAX_REST_ITERATIONS):
-            high, low = (misfit(position + sign * _REST_DIFFERENCE_STEP * size) for sign in (1.0, -1.0))
-            slope = (high - low) / (2.0 * _REST_DIFFERENCE_STEP)
+            high, low = (
+                misfit(position + sign * _REST_DIFFERENCE_STEP_OVER_MOTION_RANGE * size)
+                for sign in (1.0, -1.0)
+            )
+            slope = (high - low) / (2.0 * _REST_DIFFERENCE_STEP_OVER_MOTION_RANGE)
             step = -float(misfit(position) @ slope) / (float(slope @ slope) + 1.0)
             position += size * float(np.clip(step, -0.5, 0.5))
         return position

@@ -26,7 +26,7 @@ MIN_SECTION_AREA_SHARE, MAX_SECTION_AREA_SHARE = 1e-3, 0.38
 0.0003 to 0.1 E* h' on Gaussian heights."""
 TYPICAL_SECTION_AREA_SHARE = 0.03
 """Area share of the section [1] at which the upper tail of the heights is compared with Gaussian heights."""
-MAX_GAUSSIAN_TAIL_RATIO = 1.3
+MAX_GAUSSIAN_TAIL_OVER_RMS_HEIGHT = 1.3
 """Largest ratio of the rms height and the height of the tail [1], either way, of Gaussian heights."""
 SCAN_PARTS = 4
 """Number of parts of a scan [1] that must all have non-Gaussian heights: few hills differ by chance."""

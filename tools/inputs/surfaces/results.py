@@ -11,7 +11,7 @@ from jointfmu.quantity import Array
 
 from ...common import plots
 from ..fractal import second_difference_ratio
-from .bearing_curve import MAX_GAUSSIAN_TAIL_RATIO, BearingCurve, HeightSample, tail_ratio
+from .bearing_curve import MAX_GAUSSIAN_TAIL_OVER_RMS_HEIGHT, BearingCurve, HeightSample, tail_ratio
 from .fit import SelfAffineLaw
 from .form import Repair, ScanRoughness
 from .heights import ArealMap
@@ -148,7 +148,10 @@ class Identification:
     def is_gaussian(self) -> bool:
         """Whether the upper tail agrees with Gaussian heights; also true if parts of the scan disagree."""
         ratios = [self.tail_ratio, *map(tail_ratio, self.gap_parts)]
-        return not (max(ratios) < 1.0 / MAX_GAUSSIAN_TAIL_RATIO or min(ratios) > MAX_GAUSSIAN_TAIL_RATIO)
+        return not (
+            max(ratios) < 1.0 / MAX_GAUSSIAN_TAIL_OVER_RMS_HEIGHT
+            or min(ratios) > MAX_GAUSSIAN_TAIL_OVER_RMS_HEIGHT
+        )
 
     @property
     def slope(self) -> float:
