@@ -59,7 +59,7 @@ class FunctionGraph:
 
     def add_function(
         self,
-        name: str,
+        function_name: str,
         doc: str,
         argument_symbols: Sequence[ca.SX],
         result_expressions: Symbols,
@@ -68,11 +68,13 @@ class FunctionGraph:
     ) -> None:
         """Add a C function to the graph."""
         results = [ca.SX(value) for value in result_expressions]
-        self.functions.append(CFunction(name, doc, argument_symbols, results, called_in_loops, has_workspace))
+        self.functions.append(
+            CFunction(function_name, doc, argument_symbols, results, called_in_loops, has_workspace)
+        )
 
     def add_function_with_derivative(
         self,
-        name: str,
+        function_name: str,
         doc: str,
         argument_symbols: Sequence[ca.SX],
         result_expressions: Symbols,
@@ -82,12 +84,12 @@ class FunctionGraph:
 
         constant_count : number of leading arguments that are constant in the derivative
         """
-        self.add_function(name, doc, argument_symbols, result_expressions)
-        self.add_derivative(name, "x", argument_symbols, result_expressions, constant_count)
+        self.add_function(function_name, doc, argument_symbols, result_expressions)
+        self.add_derivative(function_name, "x", argument_symbols, result_expressions, constant_count)
 
     def add_derivative(
         self,
-        name: str,
+        function_name: str,
         doc: str,
         argument_symbols: Sequence[ca.SX],
         result_expressions: Symbols,
@@ -103,8 +105,8 @@ class FunctionGraph:
             ca.jtimes(ca.vertcat(*map(ca.SX, result_expressions)), variables, ca.vertcat(*seed))
         )
         self.add_function(
-            f"{name}_seed",
-            f"Derivative along a seed: {doc}, seed -> y of {name}",
+            f"{function_name}_seed",
+            f"Derivative along a seed: {doc}, seed -> y of {function_name}",
             [*argument_symbols, *seed],
             list(slope.nz),
         )

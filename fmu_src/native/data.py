@@ -173,14 +173,16 @@ def _text_member(member_name: str, text: str, size: int) -> DataMember:
     return DataMember("char", member_name, (size,), format_string(text), text.encode().ljust(size, b"\0"))
 
 
-def _array_member(member_name: str, values: Array) -> DataMember:
+def _array_member(member_name: str, member_array: Array) -> DataMember:
     """Member of the struct that holds an array of double, or of int16_t."""
 
     def format_c_array(array: Array) -> str:
         """Format an array as nested C initializers."""
-        format_item = str if values.dtype.kind == "i" else format_number
+        format_item = str if member_array.dtype.kind == "i" else format_number
         items = [format_item(v) for v in array] if array.ndim == 1 else [format_c_array(row) for row in array]
         return "{" + (", " if array.ndim == 1 else ",\n        ").join(items) + "}"
 
-    kind = "int16_t" if values.dtype.kind == "i" else "double"
-    return DataMember(kind, member_name, values.shape, format_c_array(values), values.tobytes())
+    kind = "int16_t" if member_array.dtype.kind == "i" else "double"
+    return DataMember(
+        kind, member_name, member_array.shape, format_c_array(member_array), member_array.tobytes()
+    )

@@ -148,7 +148,7 @@ def _compute_ramp(
     model: Model,
     parameters: ParameterFile,
     purpose: str,
-    name: str,
+    experiment_name: str,
     doc: str,
     variable_values: Mapping[str, object],
     level_count: int,
@@ -166,7 +166,7 @@ def _compute_ramp(
     drive = Stimulus(model.ramp.input_name, ramp_levels, interval)
     return ReferenceExperiment(
         purpose,
-        name,
+        experiment_name,
         doc,
         variable_values,
         drive,

@@ -188,12 +188,14 @@ def _declare_experiment(
     return {path: content for path, content in contents.items() if path not in members}
 
 
-def _format_parameter_set(model: Model, name: str, value_by_name: Mapping[str, object]) -> bytes:
+def _format_parameter_set(
+    model: Model, parameter_set_name: str, value_by_name: Mapping[str, object]
+) -> bytes:
     """Content of an SSV file with values of parameters and inputs of a model."""
     units = {v.name: v.unit for v in model.inputs}
     units |= {n: item.metadata.get("unit", "") for n, item in model.parameter_fields().items()}
     return format_parameter_set(
-        name, {n: ParameterValue(value, units[n]) for n, value in value_by_name.items()}
+        parameter_set_name, {n: ParameterValue(value, units[n]) for n, value in value_by_name.items()}
     )
 
 

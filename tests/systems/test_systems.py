@@ -326,7 +326,7 @@ def test_an_archive_is_complete_and_its_connections_fit(
         assert units[start] == units[end]
         ends.append(end)
     assert len(ends) == len(set(ends))
-    assert set(ends) == {f"{w.target}.{w.input}" for w in find_signals(found)}
+    assert set(ends) == {f"{w.target_component}.{w.input}" for w in find_signals(found)}
     assert {u.get("name") for u in root.iterfind("ssd:Units/ssc:Unit", space)} == set(units.values())
     described = {n: content for n, content in members.items() if n.endswith(".fmu")}
     assert {f"resources/{fmu}.fmu" for fmu in fmus.values()} == set(described)

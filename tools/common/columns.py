@@ -242,7 +242,7 @@ def parse_number(cell: str) -> float | None:
 def _apply_stated_headings(
     path: Path, cells: Sequence[str], stated_headings: Mapping[str, ColumnHead]
 ) -> list[str]:
-    """Replace headings by the names and units that the caller states for them.
+    """Replace the headings of columns for which the caller states name and unit.
 
     Raises ValueError if the file does not have a stated heading.
     """

@@ -125,7 +125,7 @@ class ContactEnergy:
         """
 
         def energy_slope(step_length: float) -> float:
-            """Slope of the energy [J] with respect to the step length."""
+            """Derivative [J] of the energy with respect to the step length [1]."""
             p = self.pressure_law(approach + step_length * approach_change)[0]
             return (
                 initial_slope + step_length * slope_rate + float(approach_change @ (self.quadrature_area * p))

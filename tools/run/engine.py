@@ -139,7 +139,7 @@ class VariableJoint:
         return engine
 
     def _find_engine(self, hidden_values: Mapping[str, Any]) -> tuple[JointEngine, dict[str, Any]]:
-        """Engine of the joint with these hidden parameters, and the exposed parameters that are set in it.
+        """Find the engine with these hidden parameters, or open it; returns also its exposed parameters.
 
         hidden_values : {name: value} of parameters that the FMU does not expose
         """

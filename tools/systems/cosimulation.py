@@ -62,7 +62,7 @@ def simulate_system(
         current = [0.0] * len(columns)
 
         def set_inputs(component_names: list[str]) -> None:
-            """Set the inputs of components from the outputs of the others."""
+            """Set the inputs of components from the outputs of the components connected to them."""
             for name in component_names:
                 slaves[name].set_inputs(*[current[k] for k in sources[name]])
 

@@ -130,10 +130,10 @@ def file_attributes() -> dict[str, str]:
     return attributes
 
 
-def _add_parameter_binding(node: Element, name: str) -> None:
+def _add_parameter_binding(node: Element, parameter_set_name: str) -> None:
     """Bind the parameter set `parameters/NAME.ssv` to a system or component."""
     bindings = SubElement(node, "ssd:ParameterBindings")
-    SubElement(bindings, "ssd:ParameterBinding", source=f"parameters/{name}.ssv")
+    SubElement(bindings, "ssd:ParameterBinding", source=f"parameters/{parameter_set_name}.ssv")
 
 
 def _add_omsimulator_annotation(system_node: Element, step: float) -> None:

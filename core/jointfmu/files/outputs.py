@@ -151,7 +151,7 @@ def check_output(path: str | Path, file_kind: FileKind, overwrite: bool = False)
 
 
 def check_outputs(paths: Iterable[Path], file_kind: FileKind, overwrite: bool = False) -> None:
-    """Raise ValueError before the work starts if one of several output files may not or cannot be written.
+    """Raise ValueError, before the work starts, if an output file may not or cannot be written.
 
     All files are of one kind; the errors are those of `check_output`.
     """

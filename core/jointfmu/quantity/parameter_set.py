@@ -39,7 +39,7 @@ class ParameterLimit:
 
 
 def check_limits(parameters: object, limits: Iterable[ParameterLimit]) -> None:
-    """Raise ValueError for the first parameter of a set that lies outside one of the limits."""
+    """Raise ValueError if a parameter of a set lies outside its limit; the message names the first one."""
     units = {
         name: item.metadata["unit"]
         for name, item in flatten_fields(type(parameters))

@@ -191,7 +191,7 @@ def format_variables_c(model: Model) -> str:
 
 
 def _format_variable(
-    name: str,
+    variable_name: str,
     unit: str,
     doc: str,
     interval: Interval,
@@ -205,5 +205,5 @@ def _format_variable(
     )
     numbers = ", ".join(format_number(x) for x in (interval.low, interval.high, margin))
     allowed = "" if is_boolean else str(interval)
-    texts = ", ".join(format_string(x) for x in (name, "" if unit == "1" else unit, doc, allowed))
+    texts = ", ".join(format_string(x) for x in (variable_name, "" if unit == "1" else unit, doc, allowed))
     return f"{{{texts}, {numbers}, {flags}}}"

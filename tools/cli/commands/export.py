@@ -138,9 +138,11 @@ def _run_export(args: argparse.Namespace) -> CommandResult:
     )
 
 
-def _printed_unit(name: str) -> str:
+def _printed_unit(quantity_name: str) -> str:
     """SI unit of a printed quantity; empty for a number without unit."""
-    return next((unit for start, unit in _PRINTED_QUANTITY_UNITS.items() if name.startswith(start)), "")
+    return next(
+        (unit for start, unit in _PRINTED_QUANTITY_UNITS.items() if quantity_name.startswith(start)), ""
+    )
 
 
 def _exports_complete_joint(args: argparse.Namespace, parameter_file: ParameterFile) -> bool:

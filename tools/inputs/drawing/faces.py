@@ -402,7 +402,7 @@ def _face_from_scan(path: str, options: DrawingOptions) -> Face:
 
 
 def height_fact(parameter_file: ParameterFile) -> dict[str, tuple[float, str, str]]:
-    """Fact about the combined rms height of both faces of a new joint; empty if the height is not known."""
+    """Fact about the combined rms height of both faces of a new joint; empty if the height is unknown."""
     h = find_rms_height(parameter_file)
     return {} if h is None else {"h": (float(h), "m", "combined rms height of both faces")}
 

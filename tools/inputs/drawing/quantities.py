@@ -75,10 +75,10 @@ BRINELL_AND_VICKERS = dict.fromkeys(("HB", "HBW", "HV"), KGF_PER_MM2)
 
 def _declare_length(
     meaning: str,
-    low: float,
-    high: float,
+    min_plausible: float,
+    max_plausible: float,
     *,
-    limit: float = math.inf,
+    max_allowed: float = math.inf,
     allows_zero: bool = False,
     has_sign: bool = False,
 ) -> DrawingQuantity:
@@ -87,22 +87,22 @@ def _declare_length(
         meaning,
         "mm",
         "m",
-        (low, high),
-        limits=(0.0, limit),
+        (min_plausible, max_plausible),
+        limits=(0.0, max_allowed),
         other_units=("m", "um"),
         allows_zero=allows_zero,
         has_sign=has_sign,
     )
 
 
-def _declare_height(name: str, high: float) -> DrawingQuantity:
+def _declare_height(name: str, max_plausible: float) -> DrawingQuantity:
     """Declare a roughness height in um, up to a plausible limit [um]."""
     return DrawingQuantity(
         f"{name} of machined surfaces",
         "um",
         "m",
-        (0.005, high),
-        limits=(MIN_HEIGHT, high),
+        (0.005, max_plausible),
+        limits=(MIN_HEIGHT, max_plausible),
         other_units=("m", "mm", "nm"),
         allows_range=True,
     )
@@ -114,14 +114,19 @@ def _declare_friction(meaning: str) -> DrawingQuantity:
 
 
 def _declare_torque(
-    meaning: str, low: float, high: float, *, allows_zero: bool = False, allows_range: bool = False
+    meaning: str,
+    min_plausible: float,
+    max_plausible: float,
+    *,
+    allows_zero: bool = False,
+    allows_range: bool = False,
 ) -> DrawingQuantity:
     """Declare a torque in N.m, with its plausible range [N.m]."""
     return DrawingQuantity(
         meaning,
         "N.m",
         "N.m",
-        (low, high),
+        (min_plausible, max_plausible),
         other_units=("kN.m", "mN.m"),
         allows_zero=allows_zero,
         allows_range=allows_range,
@@ -135,9 +140,9 @@ QUANTITIES: Mapping[str, DrawingQuantity] = {
     "circle": _declare_length("diameter of a pitch circle", 4.0, 2e4),
     "grip": _declare_length("clamped length", 0.5, 5e3),
     "thickness": _declare_length("thickness of a plate", 0.5, 3e3),
-    "hole": _declare_length("diameter of a hole", 2.0, 150.0, limit=150.0),
-    "bearing": _declare_length("diameter of a bearing surface", 3.0, 400.0, limit=400.0),
-    "washers": _declare_length("diameter or thickness of a washer", 0.2, 400.0, limit=400.0),
+    "hole": _declare_length("diameter of a hole", 2.0, 150.0, max_allowed=150.0),
+    "bearing": _declare_length("diameter of a bearing surface", 3.0, 400.0, max_allowed=400.0),
+    "washers": _declare_length("diameter or thickness of a washer", 0.2, 400.0, max_allowed=400.0),
     "preload": DrawingQuantity(
         "preload of a bolt", "N", "N", (100.0, 3e6), other_units=("kN",), allows_range=True
     ),

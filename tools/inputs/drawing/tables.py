@@ -192,9 +192,9 @@ def read_tightening_methods() -> dict[str, TighteningMethod]:
     }
 
 
-def thread_source(column: str) -> str:
+def thread_source(bolt_column: str) -> str:
     """Source text of a column in the table of bolts."""
-    return str(_read_document("bolts")[1]["columns"][column]["source"])
+    return str(_read_document("bolts")[1]["columns"][bolt_column]["source"])
 
 
 @cache

@@ -216,18 +216,18 @@ def _parse_row(
     file_and_line: str,
     step_and_increment: str,
     part_instance: str,
-    columns: Sequence[str],
+    column_names: Sequence[str],
     row_words: Sequence[str],
 ) -> ListingRow:
     """Parse one row of a listing: a node and a number for each column; ValueError for any other line."""
-    numbers = row_words[-len(columns) :]
+    numbers = row_words[-len(column_names) :]
     if (
         not row_words[0].isdigit()
-        or len(row_words) != len(columns) + 1
+        or len(row_words) != len(column_names) + 1
         or not all(map(NUMBER_PATTERN.fullmatch, numbers))
     ):
         raise ValueError(
-            f"{file_and_line}: {' '.join(row_words)!r} is not a row with a node and {' '.join(columns)}"
+            f"{file_and_line}: {' '.join(row_words)!r} is not a row with a node and {' '.join(column_names)}"
         )
     values = [float(word.upper().replace("D", "E")) for word in numbers]
     return ListingRow(
@@ -235,7 +235,7 @@ def _parse_row(
         step_and_increment,
         part_instance,
         int(row_words[0]),
-        dict(zip(columns, values, strict=True)),
+        dict(zip(column_names, values, strict=True)),
     )
 
 

@@ -550,7 +550,7 @@ def _enclosed_loop(
     )
 
 
-def sort_points(x: Array, y: Array) -> tuple[Array, Array]:
+def sort_points(x_values: Array, y_values: Array) -> tuple[Array, Array]:
     """Sort points (n) with coordinates x, y by x, ascending."""
-    order = np.argsort(x, kind="stable")
-    return x[order], y[order]
+    order = np.argsort(x_values, kind="stable")
+    return x_values[order], y_values[order]

@@ -230,11 +230,11 @@ def heights_from_columns(path: Path, grid_columns: Array, unit_factors: list[flo
 
 
 def _grid_indices(
-    path: Path, name: str, coordinates: Array, unit_size: float
+    path: Path, axis_name: str, coordinates: Array, unit_size: float
 ) -> tuple[grid.GridIndices, float]:
     """Grid index of every point along x or y, and the grid spacing [m]; the points may have any order."""
     positions, inverse = np.unique(coordinates, return_inverse=True)
-    index, step = grid.fit_grid(path, name, positions, unit_size)
+    index, step = grid.fit_grid(path, axis_name, positions, unit_size)
     return index[inverse], step * unit_size
 
 

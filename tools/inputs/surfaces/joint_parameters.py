@@ -52,7 +52,7 @@ def _profile_direction(identified_surface: Identification, surface: RoughSurface
 def _dimension_and_roughness(
     fractal_result: FractalResult, surface: RoughSurface
 ) -> tuple[Estimate, Estimate]:
-    """Fractal parameters D and G of a result, as the joint needs them: of the surface or of the profile."""
+    """Fractal parameters D and G of a result: of the surface or of the profile, as the joint needs them."""
     if surface.is_areal:
         return fractal_result.areal.D_s, fractal_result.areal.G_s
     return fractal_result.profile.D, fractal_result.profile.G

@@ -193,16 +193,16 @@ def _stiffness_text(compliances: Compliances, remaining_preload: float, moment: 
     )
 
 
-def _group_equal_rows(columns: Array) -> list[list[int]]:
+def _group_equal_rows(number_columns: Array) -> list[list[int]]:
     """Group the rows of columns of numbers: indices of rows with equal values together.
 
     The groups are in the order of their first rows.
     """
     groups: list[list[int]] = []
-    scale = float(np.max(np.abs(columns), initial=0.0))
-    for j, row in enumerate(columns):
+    scale = float(np.max(np.abs(number_columns), initial=0.0))
+    for j, row in enumerate(number_columns):
         for group in groups:
-            if np.allclose(row, columns[group[0]], rtol=0.0, atol=EQUAL_FORCE_TOLERANCE * scale):
+            if np.allclose(row, number_columns[group[0]], rtol=0.0, atol=EQUAL_FORCE_TOLERANCE * scale):
                 group.append(j)
                 break
         else:

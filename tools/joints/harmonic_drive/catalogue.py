@@ -85,7 +85,7 @@ def find_drive(drive_name: str) -> CatalogueEntry:
 
 
 def find_ratio(drive: CatalogueEntry, ratio: float) -> CatalogueEntry:
-    """Find the drive of the catalogue with the same series and size as a drive, and another ratio.
+    """Find the catalogue's drive with the series and size of a given drive, and with another speed ratio.
 
     Raises ValueError with the ratios of the catalogue if there is no such drive.
     """

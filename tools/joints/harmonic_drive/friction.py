@@ -257,14 +257,17 @@ def _check_stated_numbers(
 
 
 def _make_friction_parameter(
-    column: str, catalogue_number: SourcedNumber, convert: Callable[[float], float], source_text: str
+    friction_column: str, catalogue_number: SourcedNumber, convert: Callable[[float], float], source_text: str
 ) -> SourcedNumber:
     """Friction parameter from a catalogue number, with source and interval.
 
     convert : number -> parameter
     """
     kind = "derived" if source_text and catalogue_number.origin != "estimate" else catalogue_number.origin
-    source, interval = f"{catalogue_number.source}; {PARAMETER_OF_COLUMN[column][1]}{source_text}", None
+    source, interval = (
+        f"{catalogue_number.source}; {PARAMETER_OF_COLUMN[friction_column][1]}{source_text}",
+        None,
+    )
     if catalogue_number.interval is not None:
         low, high = sorted(
             max(round(convert(end), _INTERVAL_DECIMALS), 0.0) for end in catalogue_number.interval
@@ -346,13 +349,15 @@ def add_friction_estimates(
     text = " and ".join(f"{maker} ({', '.join(names)})" for maker, names in makers.items())
     text += ", scaled by size and ratio"
 
-    def add_column_estimate(column: str, value: float, *interval_ends: float) -> None:
+    def add_column_estimate(friction_column: str, estimated_value: float, *interval_ends: float) -> None:
         """Add an estimated number to the catalogue entry of a drive.
 
         A column for which the catalogue has a value is left unchanged.
         """
         interval = min(interval_ends), max(interval_ends)
-        numbers.setdefault(column, SourcedNumber(value, "estimate", text, interval=interval))
+        numbers.setdefault(
+            friction_column, SourcedNumber(estimated_value, "estimate", text, interval=interval)
+        )
 
     add_column_estimate("starting_torque", *law.starting_torque)
     start = numbers["starting_torque"].value

@@ -190,16 +190,18 @@ def _is_stiffness_from_catalogue(
 
 
 def _compute_friction_value(
-    test_rig: DriveTestRig, column: str, sourced_numbers: Mapping[str, SourcedNumber]
+    test_rig: DriveTestRig, friction_column: str, sourced_numbers: Mapping[str, SourcedNumber]
 ) -> float:
     """Computed value of a friction column: a torque [N.m] or the efficiency [1]."""
-    if column == "starting_torque":
+    if friction_column == "starting_torque":
         return test_rig.starting_torque()
-    if column == "running_torque":
+    if friction_column == "running_torque":
         return test_rig.motor_torque(CATALOGUE_MOTOR_SPEED, 0.0)
-    if column == "efficiency":
+    if friction_column == "efficiency":
         return test_rig.efficiency(CATALOGUE_MOTOR_SPEED, sourced_numbers["rated_torque"].value)
-    return test_rig.back_driving_torque(_MAX_BACK_DRIVING_OVER_RATED_TORQUE * sourced_numbers[column].value)
+    return test_rig.back_driving_torque(
+        _MAX_BACK_DRIVING_OVER_RATED_TORQUE * sourced_numbers[friction_column].value
+    )
 
 
 REPORT_FIGURES = {"HarmonicDriveSpring": friction_figures}

@@ -25,9 +25,9 @@ def page_script(*names: str) -> str:
     return chart.read_script("figures") + "".join(map(_read_asset, names))
 
 
-def _read_asset(name: str) -> str:
+def _read_asset(file_name: str) -> str:
     """Text of a file in the folder of this module."""
-    return Path(__file__).with_name(name).read_text(encoding="utf-8")
+    return Path(__file__).with_name(file_name).read_text(encoding="utf-8")
 
 
 ROLE_PARAMETER_SOURCE, ROLE_INDEPENDENT, ROLE_PREDICTED = "set by it", "set independently", "predicted"

@@ -235,9 +235,9 @@ def _to_display_unit(values: Any, unit: str) -> tuple[Any, str]:
 def _title_in_words(output_names: Sequence[str], over: str, variables: Mapping[str, Variable]) -> str:
     """Title of a panel by the meanings of its variables: "Normal stiffness over preload of each bolt"."""
 
-    def meaning(name: str) -> str:
+    def meaning(variable_name: str) -> str:
         """Meaning of a variable as the beginning of a title."""
-        return re.split(r"[,;:(]| -?d\w+/d", variables[name].doc)[0].strip()
+        return re.split(r"[,;:(]| -?d\w+/d", variables[variable_name].doc)[0].strip()
 
     quantities = ", ".join(dict.fromkeys(map(meaning, output_names)))
     return f"{quantities[0].upper()}{quantities[1:]} over {meaning(over)}"

@@ -97,10 +97,10 @@ class LoadHistory:
             )
         return min(largest, float(f"{2.0 * high:.2g}"))
 
-    def _compute_along_path(self, name: str, input_values: Array, units: dict[str, str]) -> RampResult:
+    def _compute_along_path(self, input_name: str, input_values: Array, units: dict[str, str]) -> RampResult:
         """Compute the outputs along a path of one input, from rest."""
-        columns = self._engine.follow({**self.loop_inputs, name: input_values}).columns
-        read = (name, *(v.name for v in self.model.outputs))
+        columns = self._engine.follow({**self.loop_inputs, input_name: input_values}).columns
+        read = (input_name, *(v.name for v in self.model.outputs))
         return RampResult({key: columns[key] for key in read}, units, ())
 
     def _find_law_limit(self) -> tuple[float, str] | None:

@@ -48,12 +48,12 @@ def _vibrating_systems(joint: str) -> list[tuple[str, VibratingJoint]]:
 
 
 def _resonance_figure(
-    name: str, vibrating_joint: VibratingJoint, vibrations: Sequence[FreeVibration], fmu_folder: Path
+    system_name: str, vibrating_joint: VibratingJoint, vibrations: Sequence[FreeVibration], fmu_folder: Path
 ) -> Figure:
     """Figure of the resonance of one system over the load."""
     body, moving = vibrating_joint.vibration_test, vibrating_joint.moving_body.name
     return Figure(
-        f"In a system: resonance of the {name.replace('_', ' ')} over its {body.load_axis.name}",
+        f"In a system: resonance of the {system_name.replace('_', ' ')} over its {body.load_axis.name}",
         f"The {moving} vibrates freely about a working point, {body.support_description}. First chart: "
         "resonance frequency; "
         "circles are peaks of the spectrum of the simulated signal, the line is the square root of "
@@ -72,7 +72,7 @@ def ring_down_figures(decays: Mapping[str, Sequence[Decay]], joint: str) -> list
     ]
 
 
-def _ring_down_figure(name: str, vibrating_joint: VibratingJoint, decays: Sequence[Decay]) -> Figure:
+def _ring_down_figure(system_name: str, vibrating_joint: VibratingJoint, decays: Sequence[Decay]) -> Figure:
     """Figure of the free decay of one system with a slipping joint."""
     body, moving, (point, *_) = vibrating_joint.vibration_test, vibrating_joint.moving_body.name, decays
     has_law = point.half_eta_loop is not None
@@ -81,7 +81,7 @@ def _ring_down_figure(name: str, vibrating_joint: VibratingJoint, decays: Sequen
         f"{format_unit(body.deflection_axis.unit)}"
     )
     return Figure(
-        f"In a system: free decay of the {name.replace('_', ' ')}",
+        f"In a system: free decay of the {system_name.replace('_', ' ')}",
         f"The {moving}, {body.support_description}, is released from a deflection of {deflection} "
         f"({body.deflection_for_slip.doc}) at "
         f"{body.load_axis.display_factor * point.load:g} {body.load_axis.unit}. Circles: frequency and "
@@ -210,12 +210,12 @@ def wind_up_and_tip_error(system: System, system_results: SystemResults) -> tupl
     return q, real - q, error
 
 
-def _thin_series(name: str, time: Array, series_values: Array) -> Series:
+def _thin_series(series_name: str, time: Array, series_values: Array) -> Series:
     """Series with the smallest and the largest point of each of _PLOT_INTERVALS intervals."""
     size = -(-series_values.size // _PLOT_INTERVALS)
     intervals = [(k, series_values[k : k + size]) for k in range(0, series_values.size, size)]
     indices = sorted({k + int(f(interval)) for k, interval in intervals for f in (np.argmin, np.argmax)})
-    return Series(name, time[indices], series_values[indices])
+    return Series(series_name, time[indices], series_values[indices])
 
 
 def system_charts(system: System, system_results: SystemResults) -> list[Panel]:

@@ -168,21 +168,23 @@ class _ExchangeSimulation:
         self.fmu.getNominalsOfContinuousStates(nominals_array, state_count)
         np.ctypeslib.as_array(nominals_array, (state_count,))[:] *= MIN_SCALE_OVER_NOMINAL
 
-    def _c_callback(self, name: str) -> Callable[..., None]:
+    def _c_callback(self, function_name: str) -> Callable[..., None]:
         """Make a solver callback of a C function of the FMU; its first failure is kept in `first_failure`.
 
         The function is called directly, because fmpy's wrapper takes longer than most laws.
         """
         from fmpy.fmi1 import FMICallException, fmi1Warning
 
-        name = f"fmi{self.instance.version}{name}"
-        function, component = getattr(self.fmu.dll, name), self.fmu.component
+        function_name = f"fmi{self.instance.version}{function_name}"
+        function, component = getattr(self.fmu.dll, function_name), self.fmu.component
 
         def call(*arguments: object) -> None:
             """Call the C function; store its first failure."""
             status = function(component, *arguments)
             if status > fmi1Warning:
-                self.first_failure = self.first_failure or FMICallException(function=name, status=status)
+                self.first_failure = self.first_failure or FMICallException(
+                    function=function_name, status=status
+                )
 
         return call
 

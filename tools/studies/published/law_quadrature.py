@@ -316,11 +316,13 @@ def _yu2022(p: Parameters, largest: float) -> dict[str, float]:
     }
 
 
-def _roughness(p: Parameters, pressure: float) -> dict[str, float]:
+def _roughness(parameters: Parameters, pressure: float) -> dict[str, float]:
     """Quantities of the law `roughness` at a nominal pressure [Pa]."""
-    E, shear = _bodies(p)
-    h, gamma, wave, hurst, A_0, H = (p[n] for n in ("h", "gamma", "longest_wave", "hurst", "A_0", "H"))
-    mu, x = p["mu"], p["traction_ratio"]
+    E, shear = _bodies(parameters)
+    h, gamma, wave, hurst, A_0, H = (
+        parameters[n] for n in ("h", "gamma", "longest_wave", "hurst", "A_0", "H")
+    )
+    mu, x = parameters["mu"], parameters["traction_ratio"]
 
     def stiffness(pressure: float) -> float:
         """Normal stiffness [N/m] of the nominal area at a pressure [Pa]."""
@@ -329,7 +331,7 @@ def _roughness(p: Parameters, pressure: float) -> dict[str, float]:
 
     # Persson's diffusion of the pressure between the walls 0 and H, by 400 modes
     n = np.arange(1, 401)
-    decay = 2.0 / (n * pi) * np.exp(-0.5 * (n * pi * E * p["slope"] / (2.0 * H)) ** 2)
+    decay = 2.0 / (n * pi) * np.exp(-0.5 * (n * pi * E * parameters["slope"] / (2.0 * H)) ** 2)
     mode = decay * np.sin(n * pi * pressure / H)
     elastic, elastic_load = float(np.sum(mode[::2]) * 2.0), float(-np.sum((-1.0) ** n * mode))
     plastic = max(pressure / H - elastic_load, 0.0)

@@ -126,7 +126,7 @@ def missed_points(validated_points: Sequence[ValidatedPoint]) -> list[ValidatedP
 
 @dataclass(frozen=True, slots=True)
 class PublishedPointCounts:
-    """Numbers of compared points by role and verdict, as the README, the report and the pages state them.
+    """Counts of the compared published points by role and verdict; README, report and pages state them.
 
     The field names are keys of the document that `jointfmu validate --json` writes.
 

@@ -180,10 +180,10 @@ def _read_lines(path: Path) -> Iterator[tuple[dict[str, Any], int]]:
             yield entry, end
 
 
-def _row_error(path: Path, row: int, reason: str) -> ValueError:
+def _row_error(path: Path, row_text: int, reason: str) -> ValueError:
     """Error for a row of the file of runs that is not a run of the study."""
     return ValueError(
-        f"{path}: row {row}: {replace_unprintable(reason)[:200]}; expected a run as the command wrote "
+        f"{path}: row {row_text}: {replace_unprintable(reason)[:200]}; expected a run as the command wrote "
         "it: delete "
         "the row, and the same command repeats its run"
     )

@@ -153,23 +153,23 @@ def _load_interval(curves: LoadCurves, file: ParameterFile) -> str:
     return f"{low!r}..{high!r}"
 
 
-def resolve_interval(name: str, value: object, file: ParameterFile) -> object:
+def resolve_interval(parameter_name: str, setting: object, file: ParameterFile) -> object:
     """Replace the setting "interval" by the text LOW..HIGH; other settings are returned unchanged.
 
     The ends are the range of the parameter in the file, else the interval stated in the text of its source.
 
     Raises ValueError if the file states neither.
     """
-    if value != INTERVAL_SETTING:
-        return value
-    for entry in (name, _INPUTS_SECTION_PREFIX + name):
+    if setting != INTERVAL_SETTING:
+        return setting
+    for entry in (parameter_name, _INPUTS_SECTION_PREFIX + parameter_name):
         if entry in file.ranges:
             return "{!r}..{!r}".format(*file.ranges[entry])
-    source = file.sources.get(name, "")
+    source = file.sources.get(parameter_name, "")
     if not (match := _INTERVAL_PATTERN.search(source)):
         raise ValueError(
-            f"{name} = {INTERVAL_SETTING}: its source states none: {source!r}; expected '... interval "
-            "LOW to HIGH'"
+            f"{parameter_name} = {INTERVAL_SETTING}: its source states none: {source!r}; expected '... "
+            "interval LOW to HIGH'"
         )
     return f"{match[1]}..{match[2]}"
 

@@ -155,13 +155,13 @@ MAX_INDEX_LOADS = 21
 class SobolIndices:
     """First-order and total Sobol' indices (s, d) of s outputs with respect to d parameters.
 
-    first_half, total_half : half widths (s, d) of the 95 % confidence intervals of first and total
+    first_order_half_width, total_half_width : half widths (s, d) of the 95 % confidence intervals
     """
 
-    first: Array
-    first_half: Array
+    first_order: Array
+    first_order_half_width: Array
     total: Array
-    total_half: Array
+    total_half_width: Array
 
 
 @dataclass(frozen=True, slots=True)

@@ -145,8 +145,8 @@ def _indices_table(
     for i, parameter in enumerate(sensitivity.parameter_names):
         cells = []
         for indices in (sensitivity.outputs[name] for name in outputs):
-            first = f"{indices.first[-1, i]:.3f} +- {indices.first_half[-1, i]:.3f}"
-            total = f"{indices.total[-1, i]:.3f} +- {indices.total_half[-1, i]:.3f}"
+            first = f"{indices.first_order[-1, i]:.3f} +- {indices.first_order_half_width[-1, i]:.3f}"
+            total = f"{indices.total[-1, i]:.3f} +- {indices.total_half_width[-1, i]:.3f}"
             cells.append(f"{first} / {total}")
         lines.append(f"{parameter:<{width}}" + "".join(f"{cell:>32}" for cell in cells))
     return [*lines, ""]
@@ -175,42 +175,44 @@ def draw_bands_and_indices(path: Path, bands: Bands, sensitivity: Sensitivity | 
                 _draw_indices(grid[1, column], sensitivity, name, load, legend=column == 0)
 
 
-def _draw_bands(axes: "Axes", bands: Bands, name: str, label: str, load: str) -> None:
+def _draw_bands(axes: "Axes", bands: Bands, output_name: str, label: str, load: str) -> None:
     """Draw median and quantile bands of an output over the load."""
-    q = dict(zip(QUANTILES, bands.quantiles[name], strict=True))
+    q = dict(zip(QUANTILES, bands.quantiles[output_name], strict=True))
     for low, high, shade in ((0.01, 0.99, 0.12), (0.05, 0.95, 0.2), (0.25, 0.75, 0.3)):
         text = f"{100 * low:g} to {100 * high:g} %"
         axes.fill_between(
             bands.loads, q[low], q[high], color=plots.BLUE, alpha=shade, linewidth=0, label=text
         )
     axes.plot(bands.loads, q[0.5], color=plots.BLUE, label="median")
-    axes.plot(bands.loads, bands.nominal[name], color=plots.RED, linestyle="--", label="parameter file")
+    axes.plot(
+        bands.loads, bands.nominal[output_name], color=plots.RED, linestyle="--", label="parameter file"
+    )
     axes.set(xlabel=load, ylabel=label, xlim=(0.0, bands.loads[-1]), ylim=(0.0, None))
     axes.legend(fontsize=8)
 
 
-def _draw_distribution(axes: "Axes", bands: Bands, name: str, label: str) -> None:
+def _draw_distribution(axes: "Axes", bands: Bands, output_name: str, label: str) -> None:
     """Draw the cumulative distribution of an output at a single load."""
-    axes.plot(bands.quantiles[name][:, 0], 100.0 * np.array(QUANTILES), "o-", color=plots.BLUE)
-    axes.axvline(bands.nominal[name][0], color=plots.RED, linestyle="--", label="parameter file")
+    axes.plot(bands.quantiles[output_name][:, 0], 100.0 * np.array(QUANTILES), "o-", color=plots.BLUE)
+    axes.axvline(bands.nominal[output_name][0], color=plots.RED, linestyle="--", label="parameter file")
     axes.set(xlabel=label, ylabel="samples below [%]", ylim=(0.0, 100.0))
     axes.legend(fontsize=8)
 
 
-def _draw_indices(axes: "Axes", sensitivity: Sensitivity, name: str, load: str, legend: bool) -> None:
+def _draw_indices(axes: "Axes", sensitivity: Sensitivity, output_name: str, load: str, legend: bool) -> None:
     """Draw the Sobol' indices of an output over the load.
 
     legend : whether to draw the names of the parameters
     """
-    indices = sensitivity.outputs[name]
+    indices = sensitivity.outputs[output_name]
     for i, parameter in enumerate(sensitivity.parameter_names):
         colour = _COLOURS[i % len(_COLOURS)]
-        low = indices.total[:, i] - indices.total_half[:, i]
-        high = indices.total[:, i] + indices.total_half[:, i]
+        low = indices.total[:, i] - indices.total_half_width[:, i]
+        high = indices.total[:, i] + indices.total_half_width[:, i]
         axes.fill_between(sensitivity.loads, low, high, color=colour, alpha=0.2, linewidth=0)
         axes.plot(sensitivity.loads, indices.total[:, i], color=colour, label=parameter)
-        axes.plot(sensitivity.loads, indices.first[:, i], color=colour, linestyle="--")
-    axes.set(xlabel=load, ylabel=f"Sobol' indices of {name}", xlim=(0.0, None), ylim=(0.0, 1.05))
+        axes.plot(sensitivity.loads, indices.first_order[:, i], color=colour, linestyle="--")
+    axes.set(xlabel=load, ylabel=f"Sobol' indices of {output_name}", xlim=(0.0, None), ylim=(0.0, 1.05))
     if legend:
         axes.plot([], [], color=plots.GREY, label="total")
         axes.plot([], [], color=plots.GREY, linestyle="--", label="first order")

@@ -62,7 +62,7 @@ class UncertainParameter:
 
 
 def parse_distribution(
-    name: str, distribution_text: str, file_value: float | None
+    parameter_name: str, distribution_text: str, file_value: float | None
 ) -> UncertainParameter | None:
     """Parse the text of a distribution; None if the text is a plain value or word.
 
@@ -75,10 +75,10 @@ def parse_distribution(
         law = _parse_distribution(distribution_text.strip(), file_value)
     except ValueError as error:
         raise ValueError(
-            f"{name} = {distribution_text}: {error or 'is not a distribution'}; "
+            f"{parameter_name} = {distribution_text}: {error or 'is not a distribution'}; "
             f"allowed are {DISTRIBUTION_FORMS}"
         ) from None
-    return law and UncertainParameter(name, distribution_text, law)
+    return law and UncertainParameter(parameter_name, distribution_text, law)
 
 
 def _parse_distribution(distribution_text: str, file_value: float | None) -> Any:

@@ -132,10 +132,10 @@ def _make_unknowns(
     return unknowns
 
 
-def _list_free(name: str, numbers: Iterable[str]) -> str:
-    """Parameters of the component of `name` that can be fitted, as text."""
-    component = name.partition(".")[0]
-    return f"allowed are {', '.join(n for n in numbers if n.startswith(f'{component}.'))}"
+def _list_free(component_name: str, parameter_names: Iterable[str]) -> str:
+    """Parameters of the component of `component_name` that can be fitted, as text."""
+    component = component_name.partition(".")[0]
+    return f"allowed are {', '.join(n for n in parameter_names if n.startswith(f'{component}.'))}"
 
 
 def _check_start(measured_record: Record, model: Model, free: Sequence[str]) -> None:
@@ -195,9 +195,10 @@ class _Estimation:
                 )
 
     def fit(self, unknowns: Sequence[Unknown]) -> tuple[Solution, Array]:
-        """Solution with the covariance of correlated residuals, and standard deviation of each column [SI].
+        """Fit the parameters; returns the solution, and the standard deviation of each column [SI].
 
-        The residuals of the solution are those of all columns, one after the other.
+        The covariance of the solution allows for correlated residuals. Its residuals are those of all
+        columns, one after the other.
         """
         measured = self.measured(self.fitted_count)
         smallest, current = MIN_NOISE_OVER_SCATTER * np.std(measured, axis=0), list(unknowns)
@@ -313,11 +314,11 @@ def _root_mean_square(values: Array) -> float:
     return float(np.sqrt(np.mean(values**2)))
 
 
-def _make_plot(record: Record, name: str, unit: str, misfit: Array, fitted_row_count: int) -> FitPlot:
+def _make_plot(record: Record, column_name: str, unit: str, misfit: Array, fitted_row_count: int) -> FitPlot:
     """Plot of one column over time: measured, fitted and predicted values; below measured minus simulated."""
-    column = record.outputs[name]
+    column = record.outputs[column_name]
     shown, factor = plots.choose_unit(unit, column)
-    label = f"{name} ({shown})"
+    label = f"{column_name} ({shown})"
     simulated = factor * (column + misfit)
     return FitPlot(
         measured_x=record.time,

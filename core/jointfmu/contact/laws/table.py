@@ -35,7 +35,7 @@ one, the approach from first contact to the first point would depend on the pres
 ONSET_PRESSURE_OVER_FIRST_POINT = 1e-6
 """Pressure at which the stiffness begins, over the pressure of the first point [1]."""
 MIN_TRACTION_OVER_FRICTION_LIMIT = 1e-7
-"""Tangential force over friction limit [1] below which the loss factor is proportional to it, within round-off."""
+"""Tangential force over friction limit [1] below which the loss factor is proportional to it (round-off)."""
 MAX_STIFFNESS_EXPONENT = 5.0
 """Largest exponent of K ~ p^n between two points [1]: contact of rough surfaces has up to about 1."""
 MIN_PRESSURE_RATIO_OF_NEIGHBOURS = 1.001

@@ -20,7 +20,7 @@ _CELL_SUBDIVISIONS = 8
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoltedFrame:
-    """Rectangular frame with eight bolts on its centre line: two rows of three, one on each other side.
+    """Rectangular frame with eight bolts on its centre line: two rows of three, and two bolts between them.
 
     The rows lie at y = +-row_spacing/2 with bolts at x = -column_spacing/2, 0, +column_spacing/2.
     """

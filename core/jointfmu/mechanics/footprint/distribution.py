@@ -242,7 +242,10 @@ class NodalField:
             )
 
     def _check_points(self, entry_prefix: str) -> None:
-        """Raise ValueError if the points (prefix "") or the patches do not balance, see the class."""
+        """Raise ValueError if lists of the points (prefix "") or patches differ in length or do not balance.
+
+        The balance of sums and means is that of the class.
+        """
         count = len(getattr(self, f"{entry_prefix}share"))
         for name in (*_POINT_ENTRIES, "radius") if entry_prefix and self.patch_radius else _POINT_ENTRIES:
             if (length := len(getattr(self, entry_prefix + name))) != count:

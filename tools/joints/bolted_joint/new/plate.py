@@ -277,7 +277,7 @@ def clamp_bolt(
 
 
 def _clamped_thicknesses(options: DrawingOptions) -> list[float]:
-    """Thickness [m] of each plate, or one value for both plates together."""
+    """Clamped thicknesses [m]: of each plate, or their sum as one value."""
     grip = [parse_value("grip", text) for text in options["grip"]]
     if options["thickness"] is None:
         return grip

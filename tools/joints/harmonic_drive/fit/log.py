@@ -392,7 +392,7 @@ def _start_parameters(
     rated_torque: float | None,
     ratio: float | None,
 ) -> ParameterFile:
-    """Start parameters of a fit: of the drive that the user states in one of several ways.
+    """Start parameters of a fit: of a file, a catalogue drive, or a drive with a rated torque and ratio.
 
     Raises ValueError unless the drive is stated in exactly one way, and InputRefusal if its ratio is missing.
     """

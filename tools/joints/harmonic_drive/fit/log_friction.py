@@ -226,7 +226,7 @@ class FittedLogFriction:
 def select_parameters(
     samples: Samples, drive: DriveParameters, fitted_names: Sequence[str], rotor_inertia: float
 ) -> tuple[list[str], list[str]]:
-    """Select the parameters to fit: those that the samples can determine.
+    """Select the friction parameters to fit: those that the samples can determine.
 
     fitted_names  : names that the user states; empty: select from FITTED_PARAMETERS
     rotor_inertia : [kg.m2]
