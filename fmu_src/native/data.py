@@ -90,13 +90,13 @@ class DataBlock(NamedTuple):
             "extern const Data data;\n\n#endif\n"
         )
 
-    def make_source(self, origin: str = "") -> str:
+    def make_source(self, origin_comment: str = "") -> str:
         """Text of data.c, the data block as C source.
 
-        origin : end of its first comment, as in " from the parameters 'NAME'"
+        origin_comment : end of its first comment, as in " from the parameters 'NAME'"
         """
         rows = "".join(f"    .{m.name} = {m.c_text},\n" for m in self.members)
-        head = GENERATED_COMMENT.format(version=__version__, of=escape_comment(origin))
+        head = GENERATED_COMMENT.format(version=__version__, of=escape_comment(origin_comment))
         return f'{head}#include "data.h"\n\nconst Data data = {{\n{rows}}};\n'
 
 

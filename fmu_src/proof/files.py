@@ -149,16 +149,16 @@ def _declare_experiment(
     root_element: Element,
     experiment_number: str,
     experiment: ReferenceExperiment,
-    members: Mapping[str, bytes],
+    known_files: Mapping[str, bytes],
 ) -> dict[str, bytes]:
     """Declare an experiment below `root_element`, and return its new files {path: content}.
 
-    members : files of other experiments; equal inputs are not stored twice
+    known_files : files of other experiments; equal inputs are not stored twice
     """
     stem = f"experiments/{experiment_number}_{make_slug(experiment.name)}"
     stimuli = format_csv(experiment.stimulus.input_series).encode()
     equal_inputs = (
-        path for path, content in members.items() if path.endswith("_in.csv") and content == stimuli
+        path for path, content in known_files.items() if path.endswith("_in.csv") and content == stimuli
     )
     files = {"Stimuli": next(equal_inputs, f"{stem}_in.csv"), "References": f"{stem}_ref.csv"}
     contents = {
@@ -185,7 +185,7 @@ def _declare_experiment(
     SubElement(node, standard.TRANSIENT_ELEMENT, {name: repr(time) for name, time in times.items()})
     for tag, path in files.items():
         SubElement(node, tag, source=path)
-    return {path: content for path, content in contents.items() if path not in members}
+    return {path: content for path, content in contents.items() if path not in known_files}
 
 
 def _format_parameter_set(
@@ -200,7 +200,7 @@ def _format_parameter_set(
 
 
 def _format_manifest(related_files: Sequence[RelatedFile]) -> bytes:
-    """Content of the manifest of FMI-LS-REF."""
+    """Format the manifest of the reference files (layered standard FMI-LS-REF) as XML."""
     head = {
         "name": standard.STANDARD_NAME,
         "version": standard.STANDARD_VERSION,

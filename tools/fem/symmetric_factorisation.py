@@ -120,7 +120,10 @@ def _symmetry_basis(size: int, signed_reflections: Sequence[sp.csr_matrix]) -> s
 
 
 def _representative_rows(basis: sp.csc_matrix) -> sp.csr_matrix:
-    """Matrix (m, n) [1] that gives the coordinates of a vector of a class from one row of each image."""
+    """Matrix (m, n) [1] that maps a displacement in the span of a basis (n, m) to its coordinates.
+
+    Each coordinate is read from one row: the first one in the column of the basis.
+    """
     first = basis.indptr[:-1]
     entries = 1.0 / basis.data[first], (np.arange(basis.shape[1]), basis.indices[first])
     return sp.csr_matrix(entries, shape=basis.shape[::-1])

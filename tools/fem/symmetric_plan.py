@@ -57,8 +57,8 @@ class PlanSymmetry:
     diagonal: bool
 
     @classmethod
-    def of(cls, assembly: Assembly) -> "PlanSymmetry":
-        """Find the symmetries of an assembly. The diagonal is checked only if x and y are symmetries."""
+    def of_assembly(cls, assembly: Assembly) -> "PlanSymmetry":
+        """Find the symmetries of an assembly. The diagonal is checked only if x and y are symmetries too."""
         bolts = assembly.bolts.positions
 
         def maps_bolts(images: Array) -> bool:
@@ -78,7 +78,7 @@ def mesh_symmetric_plan(assembly: Assembly, refinement: float, graded_heads: boo
     Raises ValueError if an edge of a body runs under a bolt head.
     """
     radii = _ring_radii(assembly, refinement, graded_heads)
-    symmetry = PlanSymmetry.of(assembly)
+    symmetry = PlanSymmetry.of_assembly(assembly)
     growth = SIZE_GROWTH_AROUND_RINGS if graded_heads else ELEMENT_SIZE_GROWTH
     corners = _mesh_sector(assembly, symmetry, refinement, radii[-1], growth)
     rings = _make_rings(corners, assembly.bolts.positions, radii)

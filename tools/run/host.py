@@ -173,19 +173,19 @@ def open_instance(
     model_description: "ModelDescription",
     fmu_label: str,
     log_lines: list[str],
-    model_exchange: bool = False,
+    uses_model_exchange: bool = False,
 ) -> Iterator[Instance]:
     """Context with an instance of an unpacked FMU, which is freed at the end.
 
-    fmu_label      : name of the FMU in error messages
-    log_lines      : list to which warnings and errors of the FMU are appended
-    model_exchange : whether to use model exchange; default co-simulation
+    fmu_label           : name of the FMU in error messages
+    log_lines           : list to which warnings and errors of the FMU are appended
+    uses_model_exchange : whether to use model exchange; default co-simulation
 
     Raises ValueError if the library cannot be loaded, RuntimeError if it does not instantiate, both with one
     line.
     """
     try:
-        instance = Instance(fmu_folder, model_description, "host", model_exchange, log_lines)
+        instance = Instance(fmu_folder, model_description, "host", uses_model_exchange, log_lines)
     except Exception as error:  # fmpy raises bare Exception, ctypes its own
         reason = " ".join(str(error.__context__ or error).replace(f"{fmu_folder}{os.sep}", "").split())
         raise ValueError(

@@ -128,26 +128,26 @@ class System:
             for name, value in component.values.items()
         }
 
-    def with_joint(self, file: ParameterFile) -> "System":
+    def with_joint(self, parameter_file: ParameterFile) -> "System":
         """Copy of the system with another parameter file for all joints of its kind without their own FMU.
 
         The bodies and loads at their flanges are scaled to the new joint: it moves as the old one did.
         """
         components = dict(self.components)
         for name, joint in self.joints.items():
-            if joint.joint_kind == file.joint and not joint.has_own_fmu:
+            if joint.joint_kind == parameter_file.joint and not joint.has_own_fmu:
                 changes = {
                     key: value for key, value in joint.values.items() if key not in joint.constant_inputs
                 }
-                changed_file = file.with_values(changes, "user", f"system {self.name}")
-                components[name] = replace(joint, base_file=file, parameter_file=changed_file)
-                find_ratings = KINDS[file.joint].find_flange_ratings
+                changed_file = parameter_file.with_values(changes, "user", f"system {self.name}")
+                components[name] = replace(joint, base_file=parameter_file, parameter_file=changed_file)
+                find_ratings = KINDS[parameter_file.joint].find_flange_ratings
                 assert joint.base_file
-                before, after = find_ratings(joint.base_file.values), find_ratings(file.values)
+                before, after = find_ratings(joint.base_file.values), find_ratings(parameter_file.values)
                 for flange in before:
                     for partner in self._partners_at(f"{name}.{flange}"):
                         components[partner] = _scale_partner(
-                            components[partner], before[flange], after[flange], file.name
+                            components[partner], before[flange], after[flange], parameter_file.name
                         )
         return replace(self, components=components)
 

@@ -271,6 +271,6 @@ class Sliders:
 
 
 def compliance(stiffness: Number) -> Number:
-    """Compliance 1/stiffness; 0 where the stiffness is zero."""
+    """Compliance 1/stiffness of springs, in the inverse unit of the stiffness; 0 where there is no spring."""
     has_spring = stiffness > 0.0
     return select(has_spring, 1.0 / select(has_spring, stiffness, 1.0), 0.0)

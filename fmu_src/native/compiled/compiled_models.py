@@ -80,19 +80,19 @@ def get_compiled_model(
     return compiled_model
 
 
-def get_cached_result(dependency_text: str, model: Model, compute_result: Callable[[], bytes]) -> bytes:
-    """Bytes that `compute_result` computes from a model, read from the cache if the sources are unchanged.
+def get_cached_result(dependency_text: str, model: Model, compute_bytes: Callable[[], bytes]) -> bytes:
+    """Bytes that `compute_bytes` computes from a model, read from the cache if the sources are unchanged.
 
     dependency_text : text of everything else on which the result depends
 
-    Raises ValueError if other users may write to the cache, and what `compute_result` raises.
+    Raises ValueError if other users may write to the cache, and what `compute_bytes` raises.
     """
     name = sha256(f"{dependency_text} {_digest_sources(model)}".encode()).hexdigest()[:32]
     file = _candidate_paths(f"{model.name}-{name}{_RESULT_FILE_SUFFIX}")[-1]
     if content := _read_cache_file(file):
         with suppress(lzma.LZMAError):
             return lzma.decompress(content)
-    result = compute_result()
+    result = compute_bytes()
     with suppress(OSError):
         _write_cache_file(file, lzma.compress(result))
     return result

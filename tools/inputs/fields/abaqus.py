@@ -150,13 +150,13 @@ def _read_values(paths: Sequence[Path]) -> tuple[NodalValues, bool]:
     return NodalValues(values.pressure, values.area, coordinates | values.position), left_out
 
 
-def _read_report_rows(path: Path, lines: list[str]) -> Iterator[ListingRow]:
+def _read_report_rows(path: Path, file_lines: list[str]) -> Iterator[ListingRow]:
     """Rows of the nodal tables of an Abaqus field report; tables by element are ignored."""
     step = frame = instance = ""
     head: list[str] | None = None  # lines between the name of the part and the rows
     columns: list[str] = []
     words: list[str] = []  # words of a row that continues in the next line
-    for number, line in enumerate(lines, 1):
+    for number, line in enumerate(file_lines, 1):
         text, location = line.strip(), f"{path}: line {number}"
         if text.startswith("Step:"):
             step = text
@@ -239,11 +239,11 @@ def _parse_row(
     )
 
 
-def _read_data_file_rows(path: Path, lines: list[str]) -> Iterator[ListingRow]:
+def _read_data_file_rows(path: Path, file_lines: list[str]) -> Iterator[ListingRow]:
     """Rows of the nodal tables of an Abaqus data file."""
     step = increment = ""
     columns: list[str] = []
-    for number, line in enumerate(lines, 1):
+    for number, line in enumerate(file_lines, 1):
         words = line.split()
         if not words:
             continue

@@ -163,7 +163,7 @@ def _separate_hysteresis(
     gap_values = slice(knots, knots + int(np.sum(open_gap)))
 
     def weighted_gap(knot_weights: Array) -> tuple[float, float]:
-        """Weighted sum of the half gaps between the branches at the knots, and its standard deviation."""
+        """Weighted sum of half the angle gaps [rad] of both branches at the knots; its standard deviation."""
         row = knot_weights[open_gap]
         return float(row @ values[gap_values]), float(np.sqrt(row @ covariance[gap_values, gap_values] @ row))
 

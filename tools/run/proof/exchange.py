@@ -41,7 +41,7 @@ def run_fmpy_exchange(experiment_task: ExperimentTask, messages: list[str]) -> O
         read_description(experiment_task.fmu),
         experiment_task.fmu,
         messages,
-        model_exchange=True,
+        uses_model_exchange=True,
     ) as instance:
         instance.enter_initialization(experiment_task.times[0])
         instance.set_values({**experiment_task.settings, **experiment_task.inputs_at(0)})

@@ -56,7 +56,7 @@ class RampEvaluator(Protocol):
     def install_files(self, folder: Path) -> "RampEvaluator":
         """Copy of the evaluator whose files are in a folder of this machine."""
 
-    def run(self, index: int, settings: Settings) -> Entry:
+    def run(self, run_number: int, settings: Settings) -> Entry:
         """Evaluate a run of the study; return its journal entry."""
 
 
@@ -125,17 +125,17 @@ class FmuRamp:
             full.unlink()
         return replace(self, fmu=slim, fmu_content=None)
 
-    def run(self, index: int, settings: Settings) -> Entry:
+    def run(self, run_number: int, settings: Settings) -> Entry:
         """Run the FMU along the ramp; the settings are start values of parameters and inputs."""
         drive = self.load_ramp
         try:
             result = ramp.run_ramp(self.fmu, drive.input, drive.to, drive.step, settings)
         except (ValueError, RuntimeError) as error:
-            return _failed_entry(index, settings, str(error).replace(str(self.fmu), self.fmu.name))
+            return _failed_entry(run_number, settings, str(error).replace(str(self.fmu), self.fmu.name))
         if not_finite := [key for key, column in result.columns.items() if not np.all(np.isfinite(column))]:
-            return _failed_entry(index, settings, f"{not_finite[0]} is not finite")
+            return _failed_entry(run_number, settings, f"{not_finite[0]} is not finite")
         columns = {key: column.tolist() for key, column in result.columns.items()}
-        return {"run": index, "parameters": dict(settings), "columns": columns}
+        return {"run": run_number, "parameters": dict(settings), "columns": columns}
 
 
 def write_slim_fmu(fmu: Path, slim_path: Path) -> None:
@@ -202,16 +202,16 @@ class JointRamp:
         """Return this evaluator unchanged: it needs no files (the evaluator of an FMU unpacks the FMU)."""
         return self
 
-    def run(self, index: int, settings: Settings) -> Entry:
+    def run(self, run_number: int, settings: Settings) -> Entry:
         """Compute the joint along the ramp; the settings are values of parameters and of the load."""
         try:
             with np.errstate(all="ignore"):
                 columns = self.evaluate(settings)
         except (ValueError, RuntimeError) as error:
-            return _failed_entry(index, settings, str(error))
+            return _failed_entry(run_number, settings, str(error))
         if not all(np.all(np.isfinite(column)) for column in columns.values()):
-            return _failed_entry(index, settings, "the law gives no finite value")
-        return {"run": index, "parameters": dict(settings), "columns": columns}
+            return _failed_entry(run_number, settings, "the law gives no finite value")
+        return {"run": run_number, "parameters": dict(settings), "columns": columns}
 
     def evaluate(self, settings: Settings) -> dict[str, Array]:
         """Loads and all quantities of a sample of the joint, at the loads that are evaluated.

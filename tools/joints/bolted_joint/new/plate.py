@@ -103,7 +103,7 @@ def read_drawing(options: DrawingOptions) -> DrawnJoint:
 
     Raises ValueError with a one-line message for options that are invalid or contradict each other.
     """
-    length, width = parse_values("plate", options["plate"], separator="x", count=2)
+    length, width = parse_values("plate", options["plate"], separator="x", value_count=2)
     count, thread = layout.parse_bolts(options["bolts"])
     positions = layout.bolt_positions(options, count)
     sheet = ParameterSheet(KIND.name, faces.find_law(options))
