@@ -168,9 +168,11 @@ def _list_start_values(model: Model, parameters: ParameterFile) -> list[float]:
     return [0.0, *inputs, *(0.0 for _ in model.outputs), *values]
 
 
-def _text_member(member_name: str, text: str, size: int) -> DataMember:
-    """Member of the struct that holds a text in an array of `size` bytes."""
-    return DataMember("char", member_name, (size,), format_string(text), text.encode().ljust(size, b"\0"))
+def _text_member(member_name: str, text: str, array_size: int) -> DataMember:
+    """Member of the struct that holds a text in an array of `array_size` bytes."""
+    return DataMember(
+        "char", member_name, (array_size,), format_string(text), text.encode().ljust(array_size, b"\0")
+    )
 
 
 def _array_member(member_name: str, member_array: Array) -> DataMember:

@@ -104,9 +104,9 @@ def _combine_reflection_signs(reflections: Sequence[sp.csr_matrix]) -> Iterator[
         yield [sign * reflection for sign, reflection in zip(signs, reflections, strict=True)]
 
 
-def _symmetry_basis(size: int, signed_reflections: Sequence[sp.csr_matrix]) -> sp.csc_matrix:
+def _symmetry_basis(unknown_count: int, signed_reflections: Sequence[sp.csr_matrix]) -> sp.csc_matrix:
     """Orthonormal basis (size, m) [1] of the displacements that signed reflections do not change."""
-    projection = sp.identity(size, format="csr")
+    projection = sp.identity(unknown_count, format="csr")
     for reflection in signed_reflections:
         projection = 0.5 * (projection + reflection @ projection)
     projection = projection.tocsc()

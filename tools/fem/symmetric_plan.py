@@ -178,15 +178,15 @@ def _mesh_sector(
     return points[:, cells]
 
 
-def _add_sector(occ: object, assembly: Assembly, symmetry: PlanSymmetry) -> int:
+def _add_sector(geometry_kernel: object, assembly: Assembly, symmetry: PlanSymmetry) -> int:
     """Add the face of one sector of the plan to gmsh; return its tag."""
     x, y = 2.0 * np.max(list(layer_rectangles(assembly)), axis=0)
     low_x, low_y = 0.0 if symmetry.x else -x, 0.0 if symmetry.y else -y
     if not symmetry.diagonal:
-        return int(occ.addRectangle(low_x, low_y, 0.0, x - low_x, y - low_y))  # type: ignore[attr-defined]
-    corners = [occ.addPoint(*p, 0.0) for p in ((0.0, 0.0), (x, 0.0), (x, x))]  # type: ignore[attr-defined]
-    lines = [occ.addLine(corners[i], corners[(i + 1) % 3]) for i in range(3)]  # type: ignore[attr-defined]
-    return int(occ.addPlaneSurface([occ.addCurveLoop(lines)]))  # type: ignore[attr-defined]
+        return int(geometry_kernel.addRectangle(low_x, low_y, 0.0, x - low_x, y - low_y))  # type: ignore[attr-defined]
+    corners = [geometry_kernel.addPoint(*p, 0.0) for p in ((0.0, 0.0), (x, 0.0), (x, x))]  # type: ignore[attr-defined]
+    lines = [geometry_kernel.addLine(corners[i], corners[(i + 1) % 3]) for i in range(3)]  # type: ignore[attr-defined]
+    return int(geometry_kernel.addPlaneSurface([geometry_kernel.addCurveLoop(lines)]))  # type: ignore[attr-defined]
 
 
 def _divide_circles(gmsh_model: object, bolts: Array, radii: tuple[float, float], refinement: float) -> None:

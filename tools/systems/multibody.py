@@ -369,9 +369,9 @@ def _z_rotation(angle: Number) -> Matrix:
     return [[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]]
 
 
-def _unit_vector(index: int, size: Number) -> Vector:
+def _unit_vector(index: int, coordinate_count: Number) -> Vector:
     """Unit vector along one coordinate of a number of coordinates."""
-    return [size if k == index else 0.0 for k in range(6)]
+    return [coordinate_count if k == index else 0.0 for k in range(6)]
 
 
 def _cross_motion(velocity: Vector, motion: Vector) -> Vector:

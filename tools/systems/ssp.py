@@ -136,13 +136,13 @@ def _add_parameter_binding(node: Element, parameter_set_name: str) -> None:
     SubElement(bindings, "ssd:ParameterBinding", source=f"parameters/{parameter_set_name}.ssv")
 
 
-def _add_omsimulator_annotation(system_node: Element, step: float) -> None:
+def _add_omsimulator_annotation(system_node: Element, communication_step: float) -> None:
     """Add the annotation by which OMSimulator selects co-simulation with a fixed step [s]."""
     annotations = SubElement(system_node, "ssd:Annotations")
     annotation = SubElement(annotations, "ssc:Annotation", type="org.openmodelica")
     oms_node = SubElement(annotation, "oms:Annotations", {"xmlns:oms": _OMS_NAMESPACE})
     information = SubElement(oms_node, "oms:SimulationInformation")
-    SubElement(information, "oms:FixedStepMaster", description="oms-ma", stepSize=repr(step))
+    SubElement(information, "oms:FixedStepMaster", description="oms-ma", stepSize=repr(communication_step))
 
 
 ARCHIVE_FOLDERS = {"1.0": ("ssp", "fmi2"), "2.0": ("ssp2", "fmi3")}

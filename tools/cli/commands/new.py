@@ -218,6 +218,14 @@ def _entry_to_json(columns: Sequence[CatalogueColumn], catalogue_entry: Catalogu
     """JSON object of a catalogue entry: numbers in SI units, with origin and source."""
     units = {column.name: column.unit for column in columns}
     numbers = {
-        name: number._asdict() | {"unit": units[name]} for name, number in catalogue_entry.numbers.items()
+        name: {
+            "value": number.value,
+            "kind": number.origin,
+            "source": number.source,
+            "is_upper_limit": number.is_upper_limit,
+            "interval": number.interval,
+            "unit": units[name],
+        }
+        for name, number in catalogue_entry.numbers.items()
     }
     return {"joint": "harmonic_drive", "name": catalogue_entry.name, "numbers": numbers}

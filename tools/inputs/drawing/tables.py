@@ -173,12 +173,12 @@ class TighteningMethod:
     """Method of tightening a bolt, with the scatter of its preload.
 
     title               : name of the method in words
-    factor              : least and greatest tightening factor alpha_A = F_Mmax/F_Mmin [1]
+    tightening_factors  : least and greatest tightening factor alpha_A = F_Mmax/F_Mmin [1]
     depends_on_friction : whether the preload depends on the friction in thread and head
     """
 
     title: str
-    factor: tuple[float, float]
+    tightening_factors: tuple[float, float]
     depends_on_friction: bool
 
 

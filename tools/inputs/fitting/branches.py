@@ -388,7 +388,9 @@ def cut_branches(measured_runs: Sequence[tuple[str, Array, Array]]) -> Loops:
 def _branches_of_run(
     motion: Array, force: Array, branch_ends: Sequence[int]
 ) -> Iterator[tuple[Array, Array, float, float, float]]:
-    """Yield for each branch of a run: motion, force; motion, its standard deviation and force at the start.
+    """Yield, for each branch of a run, its samples and its start.
+
+    Samples: motion and force. Start: motion, standard deviation of this motion, and force.
 
     branch_ends : indices of the turning points, and of the last sample
 
@@ -476,7 +478,7 @@ def _check_work(
     loops = [loop for first, second in pairwise(branches) if (loop := _enclosed_loop(first, second))]
     if not loops:
         if sum((u[-1] - u[0]) * (F[-1] - F[0]) for u, F in branches) < 0.0:
-            raise ValueError(f"{message_prefix}{_SIGN_ERROR}")
+            raise ValueError(f"{message_prefix}{_FALLING_FORCE_TEXT}")
         return []
     area, size = float(np.mean([loop.area for loop in loops])), max(loop.motion_range for loop in loops)
     rise = float(np.mean([loop.mean_rise for loop in loops]))
@@ -486,7 +488,7 @@ def _check_work(
     noise = np.hypot(noise_deviation(force), slope * noise_deviation(motion))
     deviation = noise * size * np.sqrt(2.0 / samples)
     if rise < -abs(area) / size:
-        raise ValueError(f"{message_prefix}{_SIGN_ERROR}")
+        raise ValueError(f"{message_prefix}{_FALLING_FORCE_TEXT}")
     if area < -max(
         MAX_CREATED_ENERGY_OVER_AREA_DEVIATION * deviation, RELATIVE_ROUNDING * size * float(np.ptp(force))
     ):
@@ -504,7 +506,7 @@ def _check_work(
     return [(widest.area, widest.motion_range)]
 
 
-_SIGN_ERROR = "the force decreases as the motion increases; reverse the sign of one column"
+_FALLING_FORCE_TEXT = "the force decreases as the motion increases; reverse the sign of one column"
 """Error of loops in which the force falls with the motion."""
 
 

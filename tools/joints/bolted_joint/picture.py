@@ -38,14 +38,14 @@ class SvgDrawing:
     height: float
     elements: list[str] = field(default_factory=list)
 
-    def add_element(self, tag: str, text: str = "", /, **attributes: object) -> None:
+    def add_element(self, tag: str, element_text: str = "", /, **attributes: object) -> None:
         """Add an SVG element. An `_` in the name of an attribute becomes `-`."""
         attribute_text = " ".join(
             f'{name.replace("_", "-")}="{f"{value:.1f}" if isinstance(value, float) else value}"'
             for name, value in attributes.items()
         )
         element = f"<{tag} {attribute_text}"
-        self.elements.append(f"{element}>{escape(text)}</{tag}>" if text else f"{element}/>")
+        self.elements.append(f"{element}>{escape(element_text)}</{tag}>" if element_text else f"{element}/>")
 
     def add_line(
         self, x1: float, y1: float, x2: float, y2: float, stroke: str = LINE_COLOUR, dash_pattern: str = ""

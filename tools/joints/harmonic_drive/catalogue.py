@@ -84,7 +84,7 @@ def find_drive(drive_name: str) -> CatalogueEntry:
     raise ValueError(f"catalogue {drive_name!r} is unknown; {hint} (jointfmu catalogue)")
 
 
-def find_ratio(drive: CatalogueEntry, ratio: float) -> CatalogueEntry:
+def find_ratio(drive: CatalogueEntry, other_ratio: float) -> CatalogueEntry:
     """Find the catalogue's drive with the series and size of a given drive, and with another speed ratio.
 
     Raises ValueError with the ratios of the catalogue if there is no such drive.
@@ -94,11 +94,11 @@ def find_ratio(drive: CatalogueEntry, ratio: float) -> CatalogueEntry:
         for item in list_drives()
         if _name_without_ratio(item) == _name_without_ratio(drive)
     }
-    if ratio in siblings:
-        return siblings[ratio]
+    if other_ratio in siblings:
+        return siblings[other_ratio]
     raise ValueError(
-        f"--ratio = {ratio:g} is not in the catalogue for {_name_without_ratio(drive).strip('-')}, allowed "
-        f"are {', '.join(f'{known:g}' for known in sorted(siblings))} (jointfmu catalogue); without "
+        f"--ratio = {other_ratio:g} is not in the catalogue for {_name_without_ratio(drive).strip('-')}, "
+        f"allowed are {', '.join(f'{known:g}' for known in sorted(siblings))} (jointfmu catalogue); without "
         "--catalogue, state the numbers of the row"
     )
 

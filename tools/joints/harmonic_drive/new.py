@@ -136,24 +136,24 @@ def set_temperature(joint: NewJoint, temperature_text: str) -> NewJoint:
     return replace(joint, file=file, facts={**joint.facts, **facts})
 
 
-def _signed_ratio(options: DrawingOptions, ratio: SourcedNumber) -> tuple[SourcedNumber, str]:
+def _signed_ratio(options: DrawingOptions, stated_ratio: SourcedNumber) -> tuple[SourcedNumber, str]:
     """Speed ratio input/output with its sign, which depends on the fixed part; and a text on the sign."""
-    if ratio.value < 0.0:
+    if stated_ratio.value < 0.0:
         if options["fixed"]:
             raise ValueError(
-                f"--fixed {options['fixed']} with --ratio = {ratio.value:g}, whose sign is "
+                f"--fixed {options['fixed']} with --ratio = {stated_ratio.value:g}, whose sign is "
                 "stated; expected "
                 "the ratio as catalogues print it, above 0"
             )
-        return ratio, "as stated, with its sign"
+        return stated_ratio, "as stated, with its sign"
     fixed = options["fixed"] or next(iter(FIXED_PARTS))
     value = {
-        "circular-spline": -ratio.value,
-        "flexspline": ratio.value + 1.0,
-        "wave-generator": 1.0 + 1.0 / ratio.value,
+        "circular-spline": -stated_ratio.value,
+        "flexspline": stated_ratio.value + 1.0,
+        "wave-generator": 1.0 + 1.0 / stated_ratio.value,
     }[fixed]
-    source = f"{ratio.source}; {fixed.replace('-', ' ')} fixed"
-    return ratio._replace(value=value, source=source), FIXED_PARTS[fixed]
+    source = f"{stated_ratio.source}; {fixed.replace('-', ' ')} fixed"
+    return stated_ratio._replace(value=value, source=source), FIXED_PARTS[fixed]
 
 
 def read_friction_parameters(

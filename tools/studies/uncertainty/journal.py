@@ -30,9 +30,9 @@ LOCKED_BYTE_POSITION = 1 << 40
 """Position of the locked byte in the file of runs [byte], beyond all runs."""
 
 
-def sha256_text(data: bytes) -> str:
+def sha256_text(content: bytes) -> str:
     """SHA-256 digest of bytes, as hexadecimal text."""
-    return hashlib.sha256(data).hexdigest()
+    return hashlib.sha256(content).hexdigest()
 
 
 def claim_folder(study_folder: Path, study_record: Mapping[str, object]) -> None:

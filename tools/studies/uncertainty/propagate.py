@@ -160,7 +160,7 @@ class SobolIndices:
 
     first_order: Array
     first_order_half_width: Array
-    total: Array
+    total_order: Array
     total_half_width: Array
 
 

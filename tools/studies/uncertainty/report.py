@@ -146,7 +146,7 @@ def _indices_table(
         cells = []
         for indices in (sensitivity.outputs[name] for name in outputs):
             first = f"{indices.first_order[-1, i]:.3f} +- {indices.first_order_half_width[-1, i]:.3f}"
-            total = f"{indices.total[-1, i]:.3f} +- {indices.total_half_width[-1, i]:.3f}"
+            total = f"{indices.total_order[-1, i]:.3f} +- {indices.total_half_width[-1, i]:.3f}"
             cells.append(f"{first} / {total}")
         lines.append(f"{parameter:<{width}}" + "".join(f"{cell:>32}" for cell in cells))
     return [*lines, ""]
@@ -207,10 +207,10 @@ def _draw_indices(axes: "Axes", sensitivity: Sensitivity, output_name: str, load
     indices = sensitivity.outputs[output_name]
     for i, parameter in enumerate(sensitivity.parameter_names):
         colour = _COLOURS[i % len(_COLOURS)]
-        low = indices.total[:, i] - indices.total_half_width[:, i]
-        high = indices.total[:, i] + indices.total_half_width[:, i]
+        low = indices.total_order[:, i] - indices.total_half_width[:, i]
+        high = indices.total_order[:, i] + indices.total_half_width[:, i]
         axes.fill_between(sensitivity.loads, low, high, color=colour, alpha=0.2, linewidth=0)
-        axes.plot(sensitivity.loads, indices.total[:, i], color=colour, label=parameter)
+        axes.plot(sensitivity.loads, indices.total_order[:, i], color=colour, label=parameter)
         axes.plot(sensitivity.loads, indices.first_order[:, i], color=colour, linestyle="--")
     axes.set(xlabel=load, ylabel=f"Sobol' indices of {output_name}", xlim=(0.0, None), ylim=(0.0, 1.05))
     if legend:

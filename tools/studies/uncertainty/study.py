@@ -99,10 +99,10 @@ def _parse_distribution(distribution_text: str, file_value: float | None) -> Any
     return None
 
 
-def _uniform(low: float, high: float) -> object:
+def _uniform(lower_end: float, upper_end: float) -> object:
     """Uniform distribution of scipy.stats between two values."""
-    _check_ascending(low, high)
-    return stats.uniform(low, high - low)
+    _check_ascending(lower_end, upper_end)
+    return stats.uniform(lower_end, upper_end - lower_end)
 
 
 def _loguniform(texts: list[str], file_value: float | None) -> object:
@@ -165,10 +165,10 @@ def _parse_centre_and_spread(texts: list[str], file_value: float | None) -> tupl
     return _parse_number(texts[0]), texts[1]
 
 
-def _check_ascending(low: float, high: float) -> None:
+def _check_ascending(lower_end: float, upper_end: float) -> None:
     """Raise ValueError unless the lower end of a distribution is below the upper one."""
-    if not low < high:
-        raise ValueError(f"low = {low:g} is not below high = {high:g}")
+    if not lower_end < upper_end:
+        raise ValueError(f"low = {lower_end:g} is not below high = {upper_end:g}")
 
 
 def _parse_numbers(texts: list[str], number_count: int) -> list[float]:

@@ -100,15 +100,15 @@ def sum_normal_tractions(
 
 
 def sum_friction_tractions(
-    patches: FrictionPatches, traction: Array, tangent: Sequence[Number], loss: Number
+    patches: FrictionPatches, traction: Array, tangent: Sequence[Number], friction_loss: Number
 ) -> dict[str, Number]:
     """Area-weighted sums of the tractions (m, 3) [Pa] of the patches, with tangent and loss {name: value}.
 
-    tangent, loss : (3) [Pa/m] and [J/m2] sums over the patches
+    tangent, friction_loss : (3) [Pa/m] and [J/m2] sums over the patches
     """
     sums = [patches.area_share @ np.sum(traction * unit, axis=1) for unit in unit_displacements(patches)]
     named = [*zip(_TRACTION_SUM_NAMES, sums, strict=True), *zip(_SHEAR_STIFFNESS_SUMS, tangent, strict=True)]
-    return {**dict(named), "loss": loss}
+    return {**dict(named), "loss": friction_loss}
 
 
 def sum_tangential_stiffness(patches: FrictionPatches, tangent: Array) -> list[Number]:

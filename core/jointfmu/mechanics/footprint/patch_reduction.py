@@ -65,7 +65,7 @@ MIN_OVER_MAX_NORMAL_DIAGONAL = 1e-9
 """Smallest diagonal entry of the normal equations used for damping, over the largest entry [1]."""
 EXACT_SUM_WEIGHT = 400.0
 """Weight of a sum that must be kept exactly, over the weight of a case of friction [1]."""
-RELATIVE_PERTURBATION = 1e-6
+RELATIVE_DIFFERENCE_STEP = 1e-6
 """Relative perturbation of a position or pressure for finite differences [1]."""
 NODES_PER_BATCH = 2000
 """Number of nodes whose friction is evaluated at once [1]."""
@@ -420,9 +420,11 @@ class _LinearisedFit:
         slopes = [function_values * share]
         for place in range(1, 5):
             moved = points.copy()
-            moved[place] += RELATIVE_PERTURBATION * size[place]
+            moved[place] += RELATIVE_DIFFERENCE_STEP * size[place]
             slopes.append(
-                (fit_target.evaluate_sum_functions(moved) - function_values) / RELATIVE_PERTURBATION * share
+                (fit_target.evaluate_sum_functions(moved) - function_values)
+                / RELATIVE_DIFFERENCE_STEP
+                * share
             )
         slope = np.concatenate(slopes, axis=1).T.copy()
         return cls(residual, size, gram_matrix(slope), weighted_sums(slope, residual))

@@ -169,7 +169,7 @@ def _scatter(preload: AssemblyPreload, method: TighteningMethod) -> AssemblyPrel
 
     The scatter is that of the greatest alpha_A in Table A8 of VDI 2230.
     """
-    least, greatest = method.factor
+    least, greatest = method.tightening_factors
     scatter = vdi2230.preload_scatter(greatest)
     return AssemblyPreload(
         preload.force,

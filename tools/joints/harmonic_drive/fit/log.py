@@ -390,7 +390,7 @@ def _start_parameters(
     start_parameters: ParameterFile | None,
     drive_name: str | None,
     rated_torque: float | None,
-    ratio: float | None,
+    speed_ratio: float | None,
 ) -> ParameterFile:
     """Start parameters of a fit: of a file, a catalogue drive, or a drive with a rated torque and ratio.
 
@@ -415,28 +415,28 @@ def _start_parameters(
     if start_parameters is not None:
         file = start_parameters
     elif drive_name is not None:
-        file = _catalogue_drive(drive_name, ratio)
+        file = _catalogue_drive(drive_name, speed_ratio)
     else:
         assert rated_torque is not None
-        if ratio is None:
+        if speed_ratio is None:
             raise InputRefusal(
                 f"rated torque = {rated_torque:g} N.m does not state the ratio; state both", "ratio"
             )
         default = load_default("harmonic_drive")
         max_torque_ratio = default.values.max_table_torque / default.values.rated_torque
         file = resize_drive(default, rated_torque, max_torque_ratio, "user", "stated with the log")
-    return file if ratio is None else file.with_values({"ratio": ratio}, "user", "stated")
+    return file if speed_ratio is None else file.with_values({"ratio": speed_ratio}, "user", "stated")
 
 
-def _catalogue_drive(drive_name: str, ratio: float | None) -> ParameterFile:
+def _catalogue_drive(drive_name: str, speed_ratio: float | None) -> ParameterFile:
     """Parameters of a drive of the catalogue; a stated ratio selects the drive of this ratio.
 
     A stated ratio that is the catalogue's ratio plus 1 means that the flexspline is fixed.
     """
     options = dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.options) | {"catalogue": drive_name}
-    if ratio is not None:
-        is_flexspline_fixed = abs(ratio) == find_drive(drive_name).numbers["ratio"].value + 1.0
-        options |= {"fixed": "flexspline"} if is_flexspline_fixed else {"ratio": f"{abs(ratio):g}"}
+    if speed_ratio is not None:
+        is_flexspline_fixed = abs(speed_ratio) == find_drive(drive_name).numbers["ratio"].value + 1.0
+        options |= {"fixed": "flexspline"} if is_flexspline_fixed else {"ratio": f"{abs(speed_ratio):g}"}
     return NEW_JOINT_COMMAND.make_joint(options).file
 
 
