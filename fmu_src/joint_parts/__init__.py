@@ -51,7 +51,7 @@ class FmuParts:
 
 
 def make_native_definition_loader(package_name: str) -> "Callable[[], NativeDefinition]":
-    """Function that imports the module `native` of a joint's folder and returns its `NATIVE_PART`."""
+    """Make a function that imports the module `native` of a joint and returns its `NATIVE_PART`."""
 
     def load_definition() -> "NativeDefinition":
         """Import the module and return its `NATIVE_PART`."""

@@ -52,7 +52,7 @@ def build_native_fmu(
 def _make_all_members(
     model: Model, parameters: ParameterFile, fmi_version: str, variability: str
 ) -> dict[str, bytes]:
-    """{path: content} of all files of a native FMU."""
+    """Make {path: content} of all files of a native FMU."""
     parameter_split = split_parameters(model, parameters)
     compiled = get_compiled_model(model, parameters, parameter_split)
     data = make_fmu_data(model, parameters, parameter_split, compiled.sources)
@@ -81,7 +81,7 @@ def make_common_members(
     libraries: Mapping[str, bytes],
     variability: str = VARIABILITIES[0],
 ) -> dict[str, bytes]:
-    """{path: content} of the files that every native FMU has: description, sources, binaries.
+    """Make {path: content} of the files that every native FMU has: description, sources, binaries.
 
     source_texts        : {name: text} of all C sources
     instantiation_token : GUID (FMI 2.0) or instantiation token (FMI 3.0)

@@ -76,7 +76,7 @@ class DataBlock(NamedTuple):
         return b"".join(member.content for member in self.members)
 
     def make_header(self) -> str:
-        """Text of data.h, the same for all FMUs with the same code."""
+        """Make the text of data.h, the same for all FMUs with the same code."""
         members = [
             f"    {m.c_type} {m.name}{''.join(f'[{size}]' for size in m.array_sizes)};\n"
             for m in self.members
@@ -91,7 +91,7 @@ class DataBlock(NamedTuple):
         )
 
     def make_source(self, origin_comment: str = "") -> str:
-        """Text of data.c, the data block as C source.
+        """Make the text of data.c, the data block as C source.
 
         origin_comment : end of its first comment, as in " from the parameters 'NAME'"
         """

@@ -59,7 +59,7 @@ class _StableSteps(NamedTuple):
 
 
 def make_documentation(model: Model, parameters: ParameterFile) -> dict[str, bytes]:
-    """{path: content} of the folder documentation of an FMU: page, licences, images."""
+    """Make {path: content} of the folder documentation of an FMU: page, licences, images."""
     source = model, parameters, find_asset(model, "page.html")
     page = (
         render_variables_page(*source, find_terminals(model))

@@ -111,7 +111,7 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
             self.register_variable(self._make_variable(item), nested=False)
 
     def _make_variable(self, listed_variable: ListedVariable) -> object:
-        """Variable of pythonfmu for a variable of the model description."""
+        """Make the variable of pythonfmu for a variable of the model description."""
         name = listed_variable.name
         output = listed_variable.causality == "output"
         parameter = listed_variable.causality == "parameter"

@@ -45,7 +45,7 @@ class StiffnessComparison:
 
     @property
     def is_doubtful(self) -> bool:
-        """Whether the ratio or its inverse exceeds MAX_STIFFNESS_OVER_ESTIMATE at any pressure."""
+        """Whether stiffness over estimate, or its inverse, exceeds its limit at any pressure."""
         return bool(
             np.any(
                 (self.stiffness_over_estimate > MAX_STIFFNESS_OVER_ESTIMATE)

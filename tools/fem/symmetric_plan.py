@@ -206,7 +206,7 @@ def _divide_circles(gmsh_model: object, bolts: Array, radii: tuple[float, float]
 
 
 def _make_rings(quadrilaterals: Array, bolts: Array, radii: Array) -> Array:
-    """Rings of quadrilaterals (2, 4, m) [m] around bolts, between successive circles.
+    """Make the rings of quadrilaterals (2, 4, m) [m] around bolts, between successive circles.
 
     The rings continue the given mesh inwards: each edge of the mesh on the largest circle becomes a column of
     quadrilaterals.

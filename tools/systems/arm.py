@@ -248,7 +248,7 @@ def _find_gear_ratio(path: Path, axis_name: str, drive: Mapping[str, object]) ->
 def _make_axis_sections(
     arm: Arm, axis_name: str, drive: Mapping[str, object], speed_ratio: float
 ) -> ComponentSections:
-    """Sections of a system file for the components of one axis of the arm."""
+    """Make the sections of a system file for the components of one axis of the arm."""
     k = arm.axis_names.index(axis_name)
     link = arm.links[k]
     end = np.array([[link.travel for link in arm.links]])
@@ -273,7 +273,7 @@ def _make_axis_sections(
 
 
 def _make_section(model: str, derived_values: Mapping[str, tuple[float, str]]) -> dict[str, object]:
-    """Section of a system file for a component with derived values.
+    """Make the section of a system file for a component with derived values.
 
     derived_values : {name: (value, unit)}
     """

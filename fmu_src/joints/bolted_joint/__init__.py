@@ -62,7 +62,7 @@ def _make_single_mode_bodies(bolt_count: int) -> dict[str, object]:
 
 
 def _make_data_tables(joint: AnyBoltedJoint) -> Mapping[str, DataTable]:
-    """{name: table} of numbers of a bolted joint that its C code reads as data.
+    """Make {name: table} of numbers of a bolted joint that its C code reads as data.
 
     The tables have the contact points, friction patches, sliders, bolts and modes of the members.
     """
@@ -77,7 +77,7 @@ def _make_data_tables(joint: AnyBoltedJoint) -> Mapping[str, DataTable]:
 
 
 def _make_body_tables(joint: AnyBoltedJoint) -> Mapping[str, DataTable]:
-    """{name: table} of the elastic members: modal stiffness, bolts, displacements, pressure transfer.
+    """Make {name: table} of the elastic members: modal stiffness, bolts, displacements, pressure transfer.
 
     A row has the displacements of one point, patch or bolt by all modes, as 2-byte integers. A joint with
     rigid sides reserves one row for each table, and MAX_RIGID_SIDE_BOLTS rows for the bolts.

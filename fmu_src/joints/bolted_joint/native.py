@@ -132,7 +132,7 @@ def _add_cycle_functions(function_graph: FunctionGraph) -> None:
 
 
 def _make_definitions(function_graph: FunctionGraph, model: Model) -> CDefinitions:
-    """Constants that the C code of the bolted joint has in common with Python."""
+    """Make the constants that the C code of the bolted joint has in common with Python."""
     counts = {f"SUM_{name.upper()}": k for k, name in enumerate(outputs.CONTACT_SUM_NAMES)} | {
         "N_SUMS": len(outputs.CONTACT_SUM_NAMES)
     }

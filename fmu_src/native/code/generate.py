@@ -86,7 +86,7 @@ def _generate_law_sources(
 
 
 def read_instantiation_token(source_texts: Mapping[str, str]) -> str:
-    """GUID or instantiation token in the file data.c of C sources."""
+    """Read the GUID or instantiation token in the file data.c of C sources."""
     line = next(line for line in source_texts["data.c"].splitlines() if ".token = " in line)
     return line.split('"')[1]
 

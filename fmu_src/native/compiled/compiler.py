@@ -171,7 +171,7 @@ def _compiler_options(platform: str, library_name: str) -> tuple[str, ...]:
 
 
 def _read_fmi_headers() -> dict[str, str]:
-    """{file name: text} of the FMI headers, from fmpy."""
+    """Read {file name: text} of the FMI headers, from fmpy."""
     import fmpy
 
     folder = Path(fmpy.__file__).parent / "c-code"

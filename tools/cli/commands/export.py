@@ -249,7 +249,7 @@ def _create_export(args: argparse.Namespace, parameter_file: ParameterFile) -> "
 
 
 def _read_working_point(args: argparse.Namespace, joint_name: str) -> Any:
-    """Working point of the joint from the options; None if no option states one."""
+    """Read the working point of the joint from the options; None if no option states one."""
     available = exports.load_exports(joint_name)
     values = {name: getattr(args, name) for name in available.working_point}
     if available.working_point_class is None or all(value is None for value in values.values()):

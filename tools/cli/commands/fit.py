@@ -77,7 +77,7 @@ def _read_options(procedure: Procedure, args: argparse.Namespace) -> dict[str, o
 
 
 def _read_option(option: Option, args: argparse.Namespace) -> object:
-    """Value of one option of a procedure, a number in SI units."""
+    """Read the value of one option of a procedure, a number in SI units."""
     value = getattr(args, option.name)
     if not option.default_unit or value is None:
         return value

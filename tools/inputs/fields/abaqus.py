@@ -151,7 +151,7 @@ def _read_values(paths: Sequence[Path]) -> tuple[NodalValues, bool]:
 
 
 def _read_report_rows(path: Path, file_lines: list[str]) -> Iterator[ListingRow]:
-    """Rows of the nodal tables of an Abaqus field report; tables by element are ignored."""
+    """Read the rows of the nodal tables of an Abaqus field report; tables by element are ignored."""
     step = frame = instance = ""
     head: list[str] | None = None  # lines between the name of the part and the rows
     columns: list[str] = []
@@ -240,7 +240,7 @@ def _parse_row(
 
 
 def _read_data_file_rows(path: Path, file_lines: list[str]) -> Iterator[ListingRow]:
-    """Rows of the nodal tables of an Abaqus data file."""
+    """Read the rows of the nodal tables of an Abaqus data file."""
     step = increment = ""
     columns: list[str] = []
     for number, line in enumerate(file_lines, 1):

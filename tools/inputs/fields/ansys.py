@@ -115,7 +115,7 @@ def _build_nodal_result(
 
 
 def _read_listing_rows(path: Path) -> Iterator[tuple[str, str, list[float]]]:
-    """All rows of a listing as (file and line, content, numbers).
+    """Read all rows of a listing as (file and line, content, numbers).
 
     The content is "pressure", "place" (coordinates), "element", or "more" (more nodes of an element).
     """

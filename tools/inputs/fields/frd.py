@@ -127,7 +127,7 @@ def _read_cells(path: Path, file_lines: list[str]) -> dict[str, list[list[int]]]
 
 
 def _read_pressures(path: Path, file_lines: list[str]) -> Iterator[tuple[int, float]]:
-    """Node numbers and contact pressures of the last contact result of an .frd file.
+    """Read the node numbers and contact pressures of the last contact result of an .frd file.
 
     With surface-to-surface contact, CalculiX lists 0 for all other nodes. With node-to-surface contact, it
     leaves out nodes whose gap is too large for a contact spring.

@@ -70,7 +70,7 @@ class MeasurementModel:
         return measured_data.residuals(self.make_oscillator(law, parameter_values), residual_scale)
 
     def make_oscillator(self, law: HysteresisLaw, parameter_values: Mapping[str, float]) -> Oscillator:
-        """Oscillator (mass on the joint) with a hysteresis law.
+        """Make the oscillator (mass on the joint) with a hysteresis law.
 
         The damping ratio of the structure may be an unknown in `parameter_values`.
         """
@@ -257,7 +257,7 @@ def make_plots(
     parameter_values: Mapping[str, float],
     residual_scale: Array,
 ) -> Sequence[FitPlot]:
-    """Plots of data and fitted law, by the kind of the measurement.
+    """Make the plots of data and fitted law, by the kind of the measurement.
 
     Loops: force over motion. Forced vibration: amplitude over frequency. Free vibration: frequency over
     amplitude, and damping ratio over amplitude.
@@ -275,7 +275,7 @@ def make_plots(
 def _make_loops_plot(
     measurement: Measurement, loops: Loops, law: HysteresisLaw, residual_scale: Array
 ) -> FitPlot:
-    """Plot of measured loops: force over motion."""
+    """Make the plot of measured loops: force over motion."""
     (force_unit, force_scale), (motion_unit, motion_scale) = (
         choose_unit(unit, values)
         for unit, values in zip(measurement.column_names.si_units, (loops.force, loops.motion), strict=True)
@@ -339,7 +339,7 @@ def _make_response_plot(
 def _make_decay_plots(
     measurement: Measurement, free_vibration: FreeVibration, joint_oscillator: Oscillator
 ) -> tuple[FitPlot, FitPlot]:
-    """Plots of a free vibration of a mass on the joint: frequency and damping ratio over amplitude."""
+    """Make plots of a free vibration of a mass on the joint: frequency and damping ratio over amplitude."""
     unit, size = choose_unit(measurement.column_names.si_units[1], free_vibration.decay_points.amplitude)
     a = free_vibration.decay_points.amplitude
     grid = np.linspace(a.min(), a.max(), _CURVE_POINTS)

@@ -56,7 +56,7 @@ paper."""
 
 
 def make_figures(job_result: Any) -> list[Figure]:
-    """Figures of the bolted joint, from the results of the main job (`PipelineResult`)."""
+    """Make the figures of the bolted joint, from the results of the main job (`PipelineResult`)."""
     joint = load_default("bolted_joint").values
     return [
         Figure(

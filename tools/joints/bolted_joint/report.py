@@ -211,7 +211,7 @@ def _group_equal_rows(number_columns: Array) -> list[list[int]]:
 
 
 def _name_bolts(bolts: Sequence[int]) -> str:
-    """Name of a curve that several bolts with equal forces share."""
+    """Name the bolts with equal forces, which share one curve of a chart."""
     names = ", ".join(bolt_force_name(j) for j in bolts)
     return f"{names} (equal)" if len(bolts) > 1 else names
 

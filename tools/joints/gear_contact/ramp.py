@@ -37,7 +37,7 @@ quantity, largest relative deviation [1])."""
 
 
 def make_figures(job_result: Any) -> list[Figure]:
-    """Figure of the gear contact, from the results of the main job (`PipelineResult`)."""
+    """Make the figure of the gear contact, from the results of the main job (`PipelineResult`)."""
     c = job_result.ramps["GearContact"].columns
     load = c["f"] / 1e3
     panels = [

@@ -52,7 +52,7 @@ _FIGURE_FORCES = (5e2, 1e3, 2e3)
 
 
 def make_figures(job_result: Any) -> list[Figure]:
-    """Figures of the gear mesh, from the results of the main job (`PipelineResult`)."""
+    """Make the figures of the gear mesh, from the results of the main job (`PipelineResult`)."""
     return [
         Figure(
             "Stiffness and deflection over the mesh cycle",

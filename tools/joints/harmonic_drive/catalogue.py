@@ -243,7 +243,7 @@ def _hysteresis_limits(series: str, drive_size: str, speed_ratio: float) -> dict
 def _make_entry_with_friction(
     friction_row: Mapping[str, str], similar_drive: CatalogueEntry
 ) -> CatalogueEntry:
-    """Catalogue entry of a drive with published friction.
+    """Make the catalogue entry of a drive with published friction.
 
     similar_drive : drive of the same size, ratio and stiffness, which may be the drive itself; it supplies
                     the values that are not published
@@ -263,7 +263,7 @@ def _make_entry_with_friction(
 
 
 def _read_table(table_name: str) -> list[dict[str, str]]:
-    """Rows of a file of the catalogue: {heading: text} each."""
+    """Read the rows of a file of the catalogue: {heading: text} each."""
     path = files("jointfmu_models") / "reference" / f"harmonic_drive_catalogue_{table_name}.csv"
     return list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
 

@@ -259,7 +259,7 @@ def _check_stated_numbers(
 def _make_friction_parameter(
     friction_column: str, catalogue_number: SourcedNumber, convert: Callable[[float], float], source_text: str
 ) -> SourcedNumber:
-    """Friction parameter from a catalogue number, with source and interval.
+    """Make the friction parameter from a catalogue number, with source and interval.
 
     convert : number -> parameter
     """

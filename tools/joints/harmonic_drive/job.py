@@ -78,7 +78,7 @@ _COMPLIANCE_FMU = "HarmonicDriveCompliance"
 
 
 def make_figures(job_result: Any) -> list[Figure]:
-    """Figures of the harmonic drive, from the results of the main job (`PipelineResult`)."""
+    """Make the figures of the harmonic drive, from the results of the main job (`PipelineResult`)."""
     result = job_result.ramps[_COMPLIANCE_FMU]
     return [
         Figure(

@@ -159,7 +159,7 @@ def _signed_ratio(options: DrawingOptions, stated_ratio: SourcedNumber) -> tuple
 def read_friction_parameters(
     options: DrawingOptions, sourced_numbers: Mapping[str, SourcedNumber]
 ) -> dict[str, SourcedNumber]:
-    """Friction parameters of the drive, from stated numbers and numbers of the catalogue.
+    """Read the friction parameters of the drive, from stated numbers and numbers of the catalogue.
 
     Empty for a fixed wave generator. Raises ValueError for stated numbers that contradict each other.
     """

@@ -26,7 +26,7 @@ def page_script(*names: str) -> str:
 
 
 def _read_asset(file_name: str) -> str:
-    """Text of a file in the folder of this module."""
+    """Read the text of a file in the folder of this module."""
     return Path(__file__).with_name(file_name).read_text(encoding="utf-8")
 
 

@@ -163,7 +163,7 @@ def _communication_points(experiment: Experiment, description: "ModelDescription
 
 
 def make_task_fields(fmu: Path, folder: str, interface: str, **other_fields: object) -> dict[str, object]:
-    """Fields of an `ExperimentTask`, as a JSON object."""
+    """Make the fields of an `ExperimentTask`, as a JSON object."""
     return {"fmu": str(fmu), "folder": str(folder), "interface": interface, **other_fields}
 
 

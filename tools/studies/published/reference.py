@@ -128,7 +128,7 @@ def read_points(paper: str) -> list[PublishedPoint]:
 
 
 def _make_point(paper: str, joint: str, point_entry: dict[str, Any]) -> PublishedPoint:
-    """Published number from its entry in the file of a paper."""
+    """Make the published number from its entry in the file of a paper."""
     guess = {"guess": Guess(**point_entry["guess"])} if "guess" in point_entry else {}
     return PublishedPoint(paper=paper, joint=joint, **(point_entry | guess))
 

@@ -22,7 +22,7 @@ SIMULATION_TOLERANCE = 1e-7
 
 
 class CompiledSystem(LoadedLibrary):
-    """System that its compiled library simulates. Parameters, start values and inputs are set in each run.
+    """Compiled simulation of a system. Parameters, start values and inputs are set in each run.
 
     The library does not depend on the values of exposed parameters. After the first time, zig finds it in its
     cache.

@@ -244,7 +244,7 @@ def _limit_change(unknown: Unknown) -> Unknown:
 def _make_result(
     estimation: _Estimation, solution: Solution, noise: Array, model: Model, start_file: ParameterFile
 ) -> FitResult:
-    """Result of the fit: intervals, facts, plots, notes."""
+    """Make the result of the fit: intervals, facts, plots, notes."""
     record, count = estimation.record, estimation.fitted_count
     columns = np.split(solution.residuals, len(record.outputs))
     jacobian, quantile = whiten_jacobian(solution.jacobian, columns)

@@ -305,6 +305,6 @@ class NodalField:
         return replace(patches, radius=np.array(self.patch_radius)) if self.patch_radius else patches
 
     def _make_distribution(self, entry_prefix: str) -> PressureDistribution:
-        """Pressure distribution of the points (prefix "") or of the friction patches."""
+        """Make the pressure distribution of the points (prefix "") or of the friction patches."""
         share, x, y, equal, tilt = (np.array(getattr(self, entry_prefix + name)) for name in _POINT_ENTRIES)
         return PressureDistribution(share, np.column_stack([x, y]), equal, tilt)

@@ -77,7 +77,7 @@ def make_sourced_numbers(
     ratio: float | None = None,
     source: str = "catalogue",
 ) -> dict[str, SourcedNumber]:
-    """Numbers of a catalogue row with their source: {parameter: number}.
+    """Make the numbers of a catalogue row with their source: {parameter: number}.
 
     rated_torque_origin : origin of the rated torque: "catalogue" if it is published, else that of the
                           estimate T2

@@ -86,7 +86,7 @@ def fit(
     fitted_names: Sequence[str] | None = None,
     inertia: float | None = None,
 ) -> FitResult:
-    """Fit a file of loops, decays, responses, or frequency and damping over the amplitude (COLUMN_NAMES).
+    """Fit a drive to a file of loops, decays, responses, or frequency and damping over the amplitude.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def fit(
     file, rest = _set_start_hysteresis(start_file, names)
 
     def make_law_with_values(parameter_values: Mapping[str, float]) -> HysteresisLaw:
-        """Hysteresis law of the drive for values of the fitted parameters."""
+        """Make the hysteresis law of the drive for values of the fitted parameters."""
         return make_law(file.with_values(parameter_values, "calibration", "fit").values)
 
     model = hysteresis_fit.build_model(data, make_law_with_values, "inertia", inertia, 0.0)

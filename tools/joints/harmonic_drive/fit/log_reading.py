@@ -88,7 +88,7 @@ def join_samples(samples_of_logs: Sequence[Samples]) -> Samples:
 
 
 def make_steady_speed_samples(columns_by_name: Mapping[str, Array], torque: Array) -> Samples:
-    """Samples of a table of steady speeds; every third row is held out."""
+    """Make the samples of a table of steady speeds; every third row is held out."""
     none = np.full(torque.size, np.nan)
     return Samples(
         time=none,
@@ -125,7 +125,7 @@ def filter_values(values: Array, time_step: float, derivative_order: int = 0) ->
 def make_dynamic_samples(
     time: Array, time_step: float, columns_by_name: Mapping[str, Array], drive: DriveParameters
 ) -> Samples:
-    """Filtered samples of a dynamic log, at times (n) [s] with a constant step [s]."""
+    """Make the filtered samples of a dynamic log, at times (n) [s] with a constant step [s]."""
     none = np.full(time.size, np.nan)
 
     def filter_column(column_name: str) -> Array:
@@ -354,7 +354,7 @@ def _joint_torque(
 def _read_dynamic_log(
     log_columns: columns.Columns, columns_by_name: Mapping[str, Array], torque: Array, drive: DriveParameters
 ) -> Samples:
-    """Filtered samples of a dynamic log, one per window of the filter."""
+    """Read the filtered samples of a dynamic log, one per window of the filter."""
     if "q" not in columns_by_name and "dq" not in columns_by_name:
         raise ValueError(
             f"{log_columns.path}: has neither q nor dq; expected {columns.format_heading(COLUMN_UNITS)}"
