@@ -352,7 +352,7 @@ def _joint_transform(link: Link, position: Number) -> Matrix:
 
 
 def _motion_transform(rotation: Matrix, origin: Vector) -> Matrix:
-    """Transform (6, 6) of motion vectors to another frame.
+    """Matrix (6, 6) that transforms spatial motion vectors to another frame.
 
     rotation : (3, 3) maps components to the new frame; origin : (3) [m] of the new frame, in the old one
     """

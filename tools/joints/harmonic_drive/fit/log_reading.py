@@ -230,7 +230,7 @@ COLUMN_SYNONYMS: Mapping[str, Sequence[str]] = {
     "temperature": ("temp", "motor_temperature", "joint_temperature", "temperatur"),
 }
 """{column: other headings that are accepted}."""
-MIN_ROWS = 6
+MIN_LOG_ROW_COUNT = 6
 """Required number of rows of a log."""
 MAX_MOTOR_SPEED = 2000.0
 """Largest plausible speed of a wave generator [rad/s]: catalogues allow up to 14 000 rev/min."""
@@ -267,7 +267,7 @@ def read_table(path: Path, renamed_columns: Mapping[str, tuple[str, str | None]]
 
     Raises ValueError with a one-line message that begins with the path.
     """
-    return columns.read_columns(path, COLUMN_UNITS, MIN_ROWS, COLUMN_SYNONYMS, renamed_columns)
+    return columns.read_columns(path, COLUMN_UNITS, MIN_LOG_ROW_COUNT, COLUMN_SYNONYMS, renamed_columns)
 
 
 def make_log(
