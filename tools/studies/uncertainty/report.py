@@ -86,13 +86,20 @@ def study_to_json(
 
 def _indices_json(sensitivity: Sensitivity) -> dict[str, object]:
     """JSON object of the Sobol' indices at all loads."""
-    numbers = ("first", "first_half", "total", "total_half")
+    fields_by_key = {
+        "first": "first_order",
+        "first_half": "first_order_half_width",
+        "total": "total_order",
+        "total_half": "total_half_width",
+    }
     return {
         "rows": sensitivity.base_sample_count,
         "loads": sensitivity.loads.tolist(),
         "outputs": {
             output: {
-                parameter: {number: getattr(indices, number)[:, i].tolist() for number in numbers}
+                parameter: {
+                    key: getattr(indices, field)[:, i].tolist() for key, field in fields_by_key.items()
+                }
                 for i, parameter in enumerate(sensitivity.parameter_names)
             }
             for output, indices in sensitivity.outputs.items()
