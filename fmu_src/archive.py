@@ -32,10 +32,10 @@ def staging_folder(target_path: Path) -> Iterator[Path]:
         ) from None
 
 
-def write_archive(contents: Mapping[str, bytes], archive_path: Path) -> None:
+def write_archive(content_by_path: Mapping[str, bytes], archive_path: Path) -> None:
     """Write a zip archive of {path: content}, with sorted members, a fixed date and a fixed system."""
     with zipfile.ZipFile(archive_path, "w") as archive:
-        for name, content in sorted(contents.items()):
+        for name, content in sorted(content_by_path.items()):
             info = zipfile.ZipInfo(name, date_time=(1980, 1, 1, 0, 0, 0))
             info.create_system = 3
             info.external_attr = 0o644 << 16

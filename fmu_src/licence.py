@@ -15,7 +15,7 @@ _THIRD_PARTY_FOLDER = Path(__file__).with_name("licenses")
 
 
 def read_licence() -> str:
-    """Licence text of the installed package jointfmu.
+    """Read the licence text of the installed package jointfmu.
 
     Raises ValueError if the file is missing.
     """
@@ -41,7 +41,7 @@ _WASI_LICENCES = (
 
 
 def read_webassembly_licences() -> str:
-    """Licence texts of a WebAssembly module: of the package and of wasi-libc.
+    """Read the licence texts of a WebAssembly module: of the package and of wasi-libc.
 
     Raises ImportError if ziglang is missing, ValueError as `read_licence`.
     """

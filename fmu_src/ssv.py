@@ -24,7 +24,7 @@ class ParameterValue(NamedTuple):
 
 def format_parameter_set(
     set_name: str,
-    entries: Mapping[str, ParameterValue],
+    value_by_name: Mapping[str, ParameterValue],
     ssp_version: str = "1.0",
     metadata: Mapping[str, str] | None = None,
 ) -> bytes:
@@ -37,7 +37,7 @@ def format_parameter_set(
         "ssv:ParameterSet", {**spaces, "version": ssp_version, "name": set_name, **(metadata or {})}
     )
     parameters = SubElement(root, "ssv:Parameters")
-    for variable, (value, unit, source) in entries.items():
+    for variable, (value, unit, source) in value_by_name.items():
         node = SubElement(parameters, "ssv:Parameter", name=variable)
         if source:
             node.set("description", source)
@@ -45,7 +45,7 @@ def format_parameter_set(
             SubElement(node, "ssv:Boolean", value=str(value).lower())
         else:
             SubElement(node, f"ssv:{REAL_ELEMENT[ssp_version]}", value=repr(float(value)), unit=unit)
-    add_units(root, "ssv", {entry.unit for entry in entries.values() if entry.unit})
+    add_units(root, "ssv", {entry.unit for entry in value_by_name.values() if entry.unit})
     return serialize_xml(root)
 
 

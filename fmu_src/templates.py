@@ -30,7 +30,7 @@ def load_template(path: Path, *template_folders: Path) -> jinja2.Template:
 
 @cache
 def _make_environment(folders: tuple[Path, ...], escape_html: bool) -> jinja2.Environment:
-    """Jinja environment of template folders; cached, because it keeps compiled templates."""
+    """Make the Jinja environment of template folders; cached, because it keeps compiled templates."""
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(folders),
         autoescape=escape_html,

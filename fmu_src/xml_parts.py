@@ -79,7 +79,7 @@ def list_units(variables: Sequence[ListedVariable]) -> list[str]:
 
 
 def make_unit_definitions(variables: Sequence[ListedVariable]) -> Element:
-    """XML element UnitDefinitions of some variables, the same in FMI 2.0 and 3.0."""
+    """Make the XML element UnitDefinitions of some variables, the same in FMI 2.0 and 3.0."""
     definitions = Element("UnitDefinitions")
     for name in list_units(variables):
         unit = SubElement(definitions, "Unit", name=name)
@@ -94,7 +94,7 @@ def make_unit_definitions(variables: Sequence[ListedVariable]) -> Element:
 
 
 def make_model_structure(model: Model, variability: str, fmi_version: str = "2") -> Element:
-    """XML element ModelStructure: outputs, derivatives and initial unknowns with their dependencies.
+    """Make the XML element ModelStructure: outputs, derivatives and initial unknowns with their dependencies.
 
     In FMI 2.0 the index of a variable equals its value reference.
 

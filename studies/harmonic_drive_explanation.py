@@ -130,7 +130,7 @@ def single_drives():
             f"{1e3 * drive.motor_torque(CATALOGUE_MOTOR_SPEED, 0.0):.0f}",
         ]
         cells += [f"{back:.3g}", f"{found:.3g}", f"{guess:.3g}"]
-        if n["efficiency"].kind == "catalogue":
+        if n["efficiency"].origin == "catalogue":
             other = CatalogueEntry(item.name, {k: v for k, v in n.items() if k != "efficiency"})
             freed = file.with_values(friction_and_ratio(other), "user", "without efficiency")
             free = file.with_values({"load_loss": 0.0}, "user", "guess")

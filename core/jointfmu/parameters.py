@@ -343,7 +343,7 @@ def read_entries(
 def _read_ranges(
     path: Path, declared_fields: Mapping[str, Field[Any]], sections: Mapping[str, Any]
 ) -> dict[str, tuple[float, float]]:
-    """{structured name: (smallest, largest value)} of the entries that state a range.
+    """Read {structured name: (smallest, largest value)} of the entries that state a range.
 
     Raises ValueError, one line, if the range does not contain the value or is outside the field's interval.
     """

@@ -51,7 +51,7 @@ class FmuParts:
 
 
 def make_native_definition_loader(package_name: str) -> "Callable[[], NativeDefinition]":
-    """Function that imports the module `native` of a joint's folder and returns its `NATIVE_PART`."""
+    """Make a function that imports the module `native` of a joint and returns its `NATIVE_PART`."""
 
     def load_definition() -> "NativeDefinition":
         """Import the module and return its `NATIVE_PART`."""
@@ -62,7 +62,10 @@ def make_native_definition_loader(package_name: str) -> "Callable[[], NativeDefi
 
 
 def load_equations_definition() -> "NativeDefinition":
-    """C definition of a joint whose outputs are explicit functions, without C sources of its own."""
+    """Import and return the C definition of a joint whose outputs are explicit functions.
+
+    The functions depend on parameters, inputs and states. Such a joint has no C sources of its own.
+    """
     from .native import EXPLICIT_EQUATIONS_DEFINITION
 
     return EXPLICIT_EQUATIONS_DEFINITION

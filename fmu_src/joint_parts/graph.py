@@ -62,7 +62,7 @@ class FunctionGraph:
 
     def add_function(
         self,
-        name: str,
+        function_name: str,
         doc: str,
         argument_symbols: Sequence[ca.SX],
         result_expressions: Symbols,
@@ -73,12 +73,14 @@ class FunctionGraph:
         """Add a C function to the graph."""
         results = [ca.SX(value) for value in result_expressions]
         self.functions.append(
-            CFunction(name, doc, argument_symbols, results, called_in_loops, has_workspace, leading_count)
+            CFunction(
+                function_name, doc, argument_symbols, results, called_in_loops, has_workspace, leading_count
+            )
         )
 
     def add_function_with_derivative(
         self,
-        name: str,
+        function_name: str,
         doc: str,
         argument_symbols: Sequence[ca.SX],
         result_expressions: Symbols,
@@ -90,12 +92,16 @@ class FunctionGraph:
         constant_count : number of leading arguments that are constant in the derivative
         leading_count  : number of leading results that both functions can compute alone; None: always all
         """
-        self.add_function(name, doc, argument_symbols, result_expressions, leading_count=leading_count)
-        self.add_derivative(name, "x", argument_symbols, result_expressions, constant_count, leading_count)
+        self.add_function(
+            function_name, doc, argument_symbols, result_expressions, leading_count=leading_count
+        )
+        self.add_derivative(
+            function_name, "x", argument_symbols, result_expressions, constant_count, leading_count
+        )
 
     def add_derivative(
         self,
-        name: str,
+        function_name: str,
         doc: str,
         argument_symbols: Sequence[ca.SX],
         result_expressions: Symbols,
@@ -113,8 +119,8 @@ class FunctionGraph:
             ca.jtimes(ca.vertcat(*map(ca.SX, result_expressions)), variables, ca.vertcat(*seed))
         )
         self.add_function(
-            f"{name}_seed",
-            f"Derivative along a seed: {doc}, seed -> y of {name}",
+            f"{function_name}_seed",
+            f"Derivative along a seed: {doc}, seed -> y of {function_name}",
             [*argument_symbols, *seed],
             list(slope.nz),
             leading_count=leading_count,
@@ -172,7 +178,7 @@ def make_symbols(symbol_prefix: str, symbol_count: int) -> list[ca.SX]:
 
 
 def collect_parameter_limits(joint: object) -> list[ParameterLimit]:
-    """Limits of those parameters whose allowed interval depends on other parameters."""
+    """Collect the limits of the parameters whose allowed interval depends on other parameters."""
     own = joint.find_parameter_limits() if hasattr(joint, "find_parameter_limits") else []
     table = joint.find_table_parameter_limits() if hasattr(joint, "find_table_parameter_limits") else []
     return [*own, *table]
@@ -240,7 +246,7 @@ def _split_regimes(spot_distribution: SpotDistribution) -> tuple[list[Number], l
         return next(i for i, known in enumerate(ends) if known is bound_log_area)
 
     def split_term(term: RegimeTerm, regime_index: int) -> list[RegimeTerm]:
-        """Terms that are active in one range of log-areas, for a term of the whole law."""
+        """Reduce a term of the whole law to the terms that are active in one range of log-areas."""
         if not isinstance(term, SmoothTerm):
             return [term]
         if find_bound_index(term.upper_log_area) < regime_index:

@@ -50,8 +50,8 @@ _STATED_FIELDS = [
     if "series" not in item.metadata
 ]
 """Dataclass fields of `StiffnessTable` that are single numbers: ratio and factor."""
-_TableNumbers = make_dataclass(
-    "_TableNumbers",
+_TableLawNumbers = make_dataclass(
+    "_TableLawNumbers",
     [*_NUMBER_FIELDS, *_STATED_FIELDS],
     bases=(_SplineNumbers,),
     frozen=True,
@@ -75,12 +75,12 @@ def find_code_class(parameters: object) -> type[object]:
 @cache
 def _class_with_numbers(cls: Any) -> type[object]:
     """Class of a parameter set in which the spline's numbers replace the points of the table."""
-    section = ("table", _TableNumbers, group_field("spline of the stiffness over the pressure"))
+    section = ("table", _TableLawNumbers, group_field("spline of the stiffness over the pressure"))
     return make_dataclass(cls.__name__, [section], bases=(cls,), frozen=True, kw_only=True)
 
 
 def replace_points(parameters: object) -> Mapping[str, Any]:
-    """{structured name: value} of a parameter set, with the numbers of the spline in place of the points.
+    """Replace the points of the table in {structured name: value} by the numbers of their spline.
 
     Tables with fewer points repeat the first one, which adds segments without length.
     """

@@ -87,7 +87,7 @@ INTEGER_CONSTANT_NAMES: ModuleConstants = {curve: ("MAX_STEP_COUNT_FACTOR",), in
 def define_constants(
     real_constant_names: ModuleConstants, integer_constant_names: ModuleConstants
 ) -> CDefinitions:
-    """C definitions of constants of Python modules, {module: names}: real numbers and integers."""
+    """Define C constants for constants of Python modules, {module: names}: real numbers and integers."""
     count_values, number_values = (
         {name: getattr(module, name) for module, names in names_by_module.items() for name in names}
         for names_by_module in (integer_constant_names, real_constant_names)
@@ -145,8 +145,8 @@ def _add_equations(function_graph: FunctionGraph, model: Model) -> None:
 def _add_jacobian(
     function_graph: FunctionGraph,
     model: Model,
-    values: Mapping[str, ca.SX],
-    results: Sequence[Any],
+    symbol_by_name: Mapping[str, ca.SX],
+    output_expressions: Sequence[Any],
     evaluate_residuals: Callable[..., Sequence[Any]],
 ) -> None:
     """Add two C functions for the Jacobian of the outputs with respect to inputs and states.
@@ -156,9 +156,9 @@ def _add_jacobian(
     """
     count, names = model.state_count, [v.name for v in model.outputs]
     accelerations = {name: ca.SX.sym(name) for name in names[count : count * 3 // 2]}
-    residuals = ca.vertcat(*evaluate_residuals(function_graph.joint, {**values, **accelerations}))
-    others = ca.vertcat(*map(ca.SX, [*results[:count], *results[count * 3 // 2 :]]))
-    knowns = ca.vertcat(*[*values.values()][1:])
+    residuals = ca.vertcat(*evaluate_residuals(function_graph.joint, {**symbol_by_name, **accelerations}))
+    others = ca.vertcat(*map(ca.SX, [*output_expressions[:count], *output_expressions[count * 3 // 2 :]]))
+    knowns = ca.vertcat(*[*symbol_by_name.values()][1:])
     pivots, triangle, order = ca.ldl(ca.jacobian(residuals, ca.vertcat(*accelerations.values())))
     factors = [pivots, triangle, ca.jacobian(residuals, knowns), ca.jacobian(others, knowns)]
     symbols: list[Any] = [ca.SX.sym(f"factor{k}_", factor.sparsity()) for k, factor in enumerate(factors)]
@@ -166,7 +166,7 @@ def _add_jacobian(
     rates = ca.ldl_solve(-ca.mtimes(symbols[2], seed), symbols[0], symbols[1], order)
     other_rates = ca.mtimes(symbols[3], seed)
     doc = "time, inputs, states, accelerations -> factors of the derivatives of the outputs"
-    arguments = [*values.values(), *accelerations.values()]
+    arguments = [*symbol_by_name.values(), *accelerations.values()]
     function_graph.add_function(
         "outputs_jacobian",
         doc,
@@ -185,7 +185,7 @@ def _add_jacobian(
 
 
 def _define_jacobian_size(function_graph: FunctionGraph, model: Model) -> CDefinitions:
-    """Constant with the number of factors that the C function `outputs_jacobian` computes."""
+    """Define the C constant with the number of factors that the C function `outputs_jacobian` computes."""
     sizes = [len(f.result_expressions) for f in function_graph.functions if f.name == "outputs_jacobian"]
     return CDefinitions({"N_JACOBIAN": sizes[0]} if sizes else {})
 

@@ -35,7 +35,7 @@ def _motion_members(
 
 
 def make_translation_flange(direction: str, icon_y: float) -> Terminal:
-    """Flange of a joint whose input is the relative translation of its two sides along an axis."""
+    """Make the flange of a joint whose input is the relative translation of its two sides along an axis."""
     members = _motion_members(
         TRANSLATIONAL_FLANGE_CLASS, f"s_rel_{direction}", f"v_rel_{direction}", f"f_{direction}"
     )
@@ -50,7 +50,7 @@ def make_translation_flange(direction: str, icon_y: float) -> Terminal:
 
 
 def make_rotation_flange(direction: str, icon_y: float) -> Terminal:
-    """Flange of a joint whose input is the small relative rotation of its two sides about an axis."""
+    """Make a flange of a joint whose input is the small relative rotation of its two sides about an axis."""
     members = _motion_members(
         ROTATIONAL_FLANGE_CLASS, f"theta_{direction}", f"omega_{direction}", f"m_{direction}"
     )
@@ -65,7 +65,7 @@ def make_rotation_flange(direction: str, icon_y: float) -> Terminal:
 
 
 def make_shaft_flange(shaft_number: int, side: str, doc: str) -> Terminal:
-    """Flange of one shaft of a joint whose inputs are the motions of its shafts."""
+    """Make the flange of one shaft of a joint whose inputs are the motions of its shafts."""
     members = _motion_members(
         ROTATIONAL_FLANGE_CLASS, f"phi{shaft_number}", f"w{shaft_number}", f"tau{shaft_number}"
     )

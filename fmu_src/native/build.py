@@ -52,7 +52,7 @@ def build_native_fmu(
 def _make_all_members(
     model: Model, parameters: ParameterFile, fmi_version: str, variability: str
 ) -> dict[str, bytes]:
-    """{path: content} of all files of a native FMU."""
+    """Make {path: content} of all files of a native FMU."""
     parameter_split = split_parameters(model, parameters)
     compiled = get_compiled_model(model, parameters, parameter_split)
     data = make_fmu_data(model, parameters, parameter_split, compiled.sources)
@@ -66,8 +66,8 @@ def _make_all_members(
     return (
         make_common_members(model, parameters, fmi_version, files, data.token, filled_libraries, variability)
         | ({"model.png": icons["icon.png"]} if fmi_version == "2" else {})
-        | _add_folder("documentation", make_documentation(model, parameters))
-        | _add_folder("terminalsAndIcons", icons)
+        | _prefix_paths("documentation", make_documentation(model, parameters))
+        | _prefix_paths("terminalsAndIcons", icons)
         | make_proof_files(model, parameters)
     )
 
@@ -81,7 +81,7 @@ def make_common_members(
     libraries: Mapping[str, bytes],
     variability: str = VARIABILITIES[0],
 ) -> dict[str, bytes]:
-    """{path: content} of the files that every native FMU has: description, sources, binaries.
+    """Make {path: content} of the files that every native FMU has: description, sources, binaries.
 
     source_texts        : {name: text} of all C sources
     instantiation_token : GUID (FMI 2.0) or instantiation token (FMI 3.0)
@@ -91,7 +91,7 @@ def make_common_members(
     sources = {
         path: text.encode() for path, text in source_texts.items() if path in units or path.endswith(".h")
     }
-    members = place_libraries(model.title, libraries, fmi_version) | _add_folder("sources", sources)
+    members = place_libraries(model.title, libraries, fmi_version) | _prefix_paths("sources", sources)
     if fmi_version == "2":
         return members | {
             "modelDescription.xml": format_fmi2_description(
@@ -129,6 +129,6 @@ def place_libraries(library_name: str, libraries: Mapping[str, bytes], fmi_versi
     return members
 
 
-def _add_folder(folder: str, contents: Mapping[str, bytes]) -> dict[str, bytes]:
+def _prefix_paths(folder_name: str, content_by_path: Mapping[str, bytes]) -> dict[str, bytes]:
     """Prefix the paths of {path: content} with a folder."""
-    return {f"{folder}/{path}": content for path, content in contents.items()}
+    return {f"{folder_name}/{path}": content for path, content in content_by_path.items()}

@@ -76,7 +76,7 @@ class DataBlock(NamedTuple):
         return b"".join(member.content for member in self.members)
 
     def make_header(self) -> str:
-        """Text of data.h, the same for all FMUs with the same code."""
+        """Make the text of data.h, the same for all FMUs with the same code."""
         members = [
             f"    {m.c_type} {m.name}{''.join(f'[{size}]' for size in m.array_sizes)};\n"
             for m in self.members
@@ -90,13 +90,13 @@ class DataBlock(NamedTuple):
             "extern const Data data;\n\n#endif\n"
         )
 
-    def make_source(self, origin: str = "") -> str:
-        """Text of data.c, the data block as C source.
+    def make_source(self, origin_comment: str = "") -> str:
+        """Make the text of data.c, the data block as C source.
 
-        origin : end of its first comment, as in " from the parameters 'NAME'"
+        origin_comment : end of its first comment, as in " from the parameters 'NAME'"
         """
         rows = "".join(f"    .{m.name} = {m.c_text},\n" for m in self.members)
-        head = GENERATED_COMMENT.format(version=__version__, of=escape_comment(origin))
+        head = GENERATED_COMMENT.format(version=__version__, of=escape_comment(origin_comment))
         return f'{head}#include "data.h"\n\nconst Data data = {{\n{rows}}};\n'
 
 
@@ -168,19 +168,23 @@ def _list_start_values(model: Model, parameters: ParameterFile) -> list[float]:
     return [0.0, *inputs, *(0.0 for _ in model.outputs), *values]
 
 
-def _text_member(member_name: str, text: str, size: int) -> DataMember:
-    """Member of the struct that holds a text in an array of `size` bytes."""
-    return DataMember("char", member_name, (size,), format_string(text), text.encode().ljust(size, b"\0"))
+def _text_member(member_name: str, text: str, array_size: int) -> DataMember:
+    """Member of the struct that holds a text in an array of `array_size` bytes."""
+    return DataMember(
+        "char", member_name, (array_size,), format_string(text), text.encode().ljust(array_size, b"\0")
+    )
 
 
-def _array_member(member_name: str, values: Array) -> DataMember:
+def _array_member(member_name: str, member_array: Array) -> DataMember:
     """Member of the struct that holds an array of double, or of int16_t."""
 
     def format_c_array(array: Array) -> str:
         """Format an array as nested C initializers."""
-        format_item = str if values.dtype.kind == "i" else format_number
+        format_item = str if member_array.dtype.kind == "i" else format_number
         items = [format_item(v) for v in array] if array.ndim == 1 else [format_c_array(row) for row in array]
         return "{" + (", " if array.ndim == 1 else ",\n        ").join(items) + "}"
 
-    kind = "int16_t" if values.dtype.kind == "i" else "double"
-    return DataMember(kind, member_name, values.shape, format_c_array(values), values.tobytes())
+    kind = "int16_t" if member_array.dtype.kind == "i" else "double"
+    return DataMember(
+        kind, member_name, member_array.shape, format_c_array(member_array), member_array.tobytes()
+    )

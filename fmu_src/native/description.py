@@ -161,7 +161,7 @@ def format_build_description(model: Model, source_names: Sequence[str]) -> bytes
 
 
 def _make_root(model: Model, fmi_version: str, token_name: str, token: str) -> Element:
-    """Root element of a model description; `token_name` is the attribute that holds the token."""
+    """Make the root element of a model description; `token_name` is the attribute that holds the token."""
     root = Element(
         "fmiModelDescription", {"fmiVersion": fmi_version, "modelName": model.title, token_name: token}
     )

@@ -34,7 +34,7 @@ class _ParameterRow(NamedTuple):
     unit: str
     allowed_values: str
     doc: str
-    kind: str
+    origin: str
     source: str
 
 
@@ -59,7 +59,7 @@ class _StableSteps(NamedTuple):
 
 
 def make_documentation(model: Model, parameters: ParameterFile) -> dict[str, bytes]:
-    """{path: content} of the folder documentation of an FMU: page, licences, images."""
+    """Make {path: content} of the folder documentation of an FMU: page, licences, images."""
     source = model, parameters, find_asset(model, "page.html")
     page = (
         render_variables_page(*source, find_terminals(model))
@@ -230,7 +230,7 @@ def find_ramp_panels(model: Model) -> tuple[RampPanel, ...]:
 
 
 def _draw_ramp(model: Model, tabulated_joint: TabulatedJoint, start_values: Mapping[str, float]) -> str:
-    """HTML element with the charts of the load ramp; the other inputs keep their start values."""
+    """Draw the load ramp as an HTML element; the other inputs keep their start values."""
     points = [
         {**start_values, model.ramp.input_name: float(x)} for x in model.ramp.sample_inputs(_RAMP_POINT_COUNT)
     ]
@@ -238,7 +238,7 @@ def _draw_ramp(model: Model, tabulated_joint: TabulatedJoint, start_values: Mapp
     variables = {v.name: v for v in (*model.inputs, *model.outputs)}
 
     def convert_column(variable_name: str, unit: str) -> list[float]:
-        """Values of a variable along the ramp, in a unit of the chart."""
+        """Convert the values of a variable along the ramp to a unit of the chart."""
         factor = UNITS[variables[variable_name].unit].display_factors[unit]
         return [factor * row[variable_name] for row in rows]
 
@@ -252,7 +252,7 @@ def _draw_ramp(model: Model, tabulated_joint: TabulatedJoint, start_values: Mapp
 
 
 def draw_further_charts(model: Model, tabulated_joint: TabulatedJoint) -> dict[str, str]:
-    """{name: HTML element} of the charts of an FMU's page, except charts of the load ramp."""
+    """Draw the charts of an FMU's page except the load ramp: {name: HTML element}."""
     drawings = find_fmu_parts(model).chart_drawings.get(model.name, {})
     return {
         name: chart.make_figure(panels(tabulated_joint, model.ramp.end_value))

@@ -13,7 +13,7 @@ from .models import PARTNERS, load_partner_parameters
 def _make_body_flanges(
     position_name: str, speed_name: str, load_name: str, connector_class: str, body_name: str
 ) -> tuple[Terminal, ...]:
-    """Two flanges of an inertia or mass; each has its own load input."""
+    """Make two flanges of an inertia or mass; each has its own load input."""
     members = {position_name: (position_name, "signal"), speed_name: (speed_name, "signal")}
     loads = {side: f"{load_name}_{side}" for side in ("a", "b")}
     return tuple(

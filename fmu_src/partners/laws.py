@@ -18,7 +18,7 @@ GRAVITY = 9.80665
 
 
 def _declare_lag_parameter(flange: str) -> Any:
-    """Parameter `lag_...` of a body: delay of the load on a flange in communication steps [1]."""
+    """Declare the parameter `lag_...` of a body: delay of the load on a flange in communication steps [1]."""
     doc = (
         f"delay of the load on {flange} in communication steps: 1 if a joint feeds it "
         f"in a parallel master, else 0"
@@ -198,7 +198,7 @@ class _BernsteinTorque(CheckedParameters):
 
 
 def _define_control_point(point_name: str) -> tuple[str, type, Any]:
-    """Dataclass field of a parameter: torque at one control point of the Bernstein polynomial."""
+    """Define the dataclass field of the torque [N.m] at one control point of the Bernstein polynomial."""
     doc = f"torque at point {point_name[1:]} of {CONTROL_POINT_COUNT} of the Bernstein polynomial"
     return point_name, float, quantity_field("N.m", doc)
 

@@ -23,7 +23,7 @@ def _make_model(
     load_ramp: LoadRamp,
     state_count: int = 0,
 ) -> Model:
-    """Model of a partner FMU, from its parameter class and variables."""
+    """Make the model of a partner FMU, from its parameter class and variables."""
     return Model(
         name=parameter_class.__name__,
         joint="partner",

@@ -20,13 +20,13 @@ from .boundary_values import find_boundary_values
 from .reference import Stimulus, compute_results, list_start_values, round_to_digits
 from .series import TimeSeries
 
-RAMP_LEVEL_COUNT = 20
+RAMP_INPUT_LEVEL_COUNT = 20
 """Number of levels of the driven input on the load ramp [1]."""
-SMOKE_LEVEL_COUNT = 4
+SMOKE_TEST_INPUT_LEVEL_COUNT = 4
 """Number of levels of the driven input in the smoke test and for shipped parameter files [1]."""
-MIN_LEVEL_COUNT = 2
+MIN_INPUT_LEVEL_COUNT = 2
 """Number of levels of the driven input for boundary values and random parameters [1]."""
-QUARTER_CYCLE_LEVEL_COUNT = 6
+QUARTER_CYCLE_INPUT_LEVEL_COUNT = 6
 """Number of levels of the driven input in a quarter cycle of the loop [1]."""
 LOOP_CYCLE_COUNT = 1
 """Number of cycles of the loop after first loading [1]."""
@@ -64,9 +64,11 @@ def compute_experiments(model: Model, parameters: ParameterFile) -> list[Referen
     """
     model = model.with_load_range(model.tabulate(parameters.values), list_start_values(model, parameters))
     return [
-        _compute_ramp(model, parameters, "smoke-test", "smoke test", "a few loads", {}, SMOKE_LEVEL_COUNT),
         _compute_ramp(
-            model, parameters, "validation", "load ramp", "the default experiment", {}, RAMP_LEVEL_COUNT
+            model, parameters, "smoke-test", "smoke test", "a few loads", {}, SMOKE_TEST_INPUT_LEVEL_COUNT
+        ),
+        _compute_ramp(
+            model, parameters, "validation", "load ramp", "the default experiment", {}, RAMP_INPUT_LEVEL_COUNT
         ),
         *_compute_hysteresis_loops(model, parameters),
         *(
@@ -77,7 +79,7 @@ def compute_experiments(model: Model, parameters: ParameterFile) -> list[Referen
                 f"model {file.name}",
                 "a shipped model",
                 settings,
-                SMOKE_LEVEL_COUNT,
+                SMOKE_TEST_INPUT_LEVEL_COUNT,
             )
             for file, settings in list_shipped_variants(model, parameters)[1:]
         ),
@@ -115,7 +117,7 @@ def list_shipped_variants(
 
 @cache
 def _load_shipped_files(joint_name: str, folder: Path) -> tuple[ParameterFile, ...]:
-    """Parameter files of a joint in a folder, and in the catalogue of bought joints."""
+    """Read the parameter files of a joint in a folder, and in the catalogue of bought joints."""
     folders = [folder, Path(str(files("jointfmu_models") / "catalogue"))]
     paths = sorted(path for source in folders if source.is_dir() for path in source.glob("*.toml"))
     joint_paths = [
@@ -146,7 +148,7 @@ def _compute_ramp(
     model: Model,
     parameters: ParameterFile,
     purpose: str,
-    name: str,
+    experiment_name: str,
     doc: str,
     variable_values: Mapping[str, object],
     level_count: int,
@@ -164,7 +166,7 @@ def _compute_ramp(
     drive = Stimulus(model.ramp.input_name, ramp_levels, interval)
     return ReferenceExperiment(
         purpose,
-        name,
+        experiment_name,
         doc,
         variable_values,
         drive,
@@ -191,8 +193,8 @@ def _compute_hysteresis_loops(model: Model, parameters: ParameterFile) -> Iterat
     middle = dict(loop.variable_values).get(
         loop.input_name, list_start_values(model, parameters)[loop.input_name]
     )
-    phase = np.arange(QUARTER_CYCLE_LEVEL_COUNT * (1 + 4 * LOOP_CYCLE_COUNT) + 1) / (
-        4.0 * QUARTER_CYCLE_LEVEL_COUNT
+    phase = np.arange(QUARTER_CYCLE_INPUT_LEVEL_COUNT * (1 + 4 * LOOP_CYCLE_COUNT) + 1) / (
+        4.0 * QUARTER_CYCLE_INPUT_LEVEL_COUNT
     )
     triangle = 1.0 - 4.0 * np.abs((phase + 0.25) % 1.0 - 0.5)
     levels = np.array([round_to_digits(middle + loop.amplitude * x) for x in triangle])
@@ -212,7 +214,13 @@ def _compute_boundary_experiments(model: Model, parameters: ParameterFile) -> It
         value_text = str(value).lower() if isinstance(value, bool) else f"{value:.9g}"
         with suppress(*_REFUSAL_ERRORS):
             computed[name, value] = _compute_ramp(
-                model, parameters, "validation", f"{name} = {value_text}", "", {name: value}, MIN_LEVEL_COUNT
+                model,
+                parameters,
+                "validation",
+                f"{name} = {value_text}",
+                "",
+                {name: value},
+                MIN_INPUT_LEVEL_COUNT,
             )
         return (name, value) in computed
 
@@ -238,7 +246,13 @@ def _compute_sampled_experiments(model: Model, parameters: ParameterFile) -> Ite
         }
         with suppress(*_REFUSAL_ERRORS):
             yield _compute_ramp(
-                model, parameters, "uncertainty-analysis", f"sample {number}", doc, settings, MIN_LEVEL_COUNT
+                model,
+                parameters,
+                "uncertainty-analysis",
+                f"sample {number}",
+                doc,
+                settings,
+                MIN_INPUT_LEVEL_COUNT,
             )
 
 

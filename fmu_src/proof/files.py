@@ -74,9 +74,9 @@ def make_reference_files(
     related: list[RelatedFile] = []
     interfaces = dict(list(_RUN_INSTRUCTIONS.items())[: 2 if is_native else 1])
 
-    def add_file(file_path: str, mime_type: str, role: str, doc: str, content: bytes) -> None:
+    def add_file(file_path: str, mime_type: str, role: str, doc: str, file_content: bytes) -> None:
         """Add a file and its entry of the manifest."""
-        members[file_path] = content
+        members[file_path] = file_content
         labels = interfaces if mime_type == standard.EXPERIMENTS_TYPE else {}
         related.append(RelatedFile(file_path, mime_type, role, doc, labels))
 
@@ -149,16 +149,16 @@ def _declare_experiment(
     root_element: Element,
     experiment_number: str,
     experiment: ReferenceExperiment,
-    members: Mapping[str, bytes],
+    known_files: Mapping[str, bytes],
 ) -> dict[str, bytes]:
     """Declare an experiment below `root_element`, and return its new files {path: content}.
 
-    members : files of other experiments; equal inputs are not stored twice
+    known_files : files of other experiments; equal inputs are not stored twice
     """
     stem = f"experiments/{experiment_number}_{make_slug(experiment.name)}"
     stimuli = format_csv(experiment.stimulus.input_series).encode()
     equal_inputs = (
-        path for path, content in members.items() if path.endswith("_in.csv") and content == stimuli
+        path for path, content in known_files.items() if path.endswith("_in.csv") and content == stimuli
     )
     files = {"Stimuli": next(equal_inputs, f"{stem}_in.csv"), "References": f"{stem}_ref.csv"}
     contents = {
@@ -185,18 +185,22 @@ def _declare_experiment(
     SubElement(node, standard.TRANSIENT_ELEMENT, {name: repr(time) for name, time in times.items()})
     for tag, path in files.items():
         SubElement(node, tag, source=path)
-    return {path: content for path, content in contents.items() if path not in members}
+    return {path: content for path, content in contents.items() if path not in known_files}
 
 
-def _format_parameter_set(model: Model, name: str, values: Mapping[str, object]) -> bytes:
+def _format_parameter_set(
+    model: Model, parameter_set_name: str, value_by_name: Mapping[str, object]
+) -> bytes:
     """Content of an SSV file with values of parameters and inputs of a model."""
     units = {v.name: v.unit for v in model.inputs}
     units |= {n: item.metadata.get("unit", "") for n, item in model.parameter_fields().items()}
-    return format_parameter_set(name, {n: ParameterValue(value, units[n]) for n, value in values.items()})
+    return format_parameter_set(
+        parameter_set_name, {n: ParameterValue(value, units[n]) for n, value in value_by_name.items()}
+    )
 
 
 def _format_manifest(related_files: Sequence[RelatedFile]) -> bytes:
-    """Content of the manifest of FMI-LS-REF."""
+    """Format the manifest of the reference files (layered standard FMI-LS-REF) as XML."""
     head = {
         "name": standard.STANDARD_NAME,
         "version": standard.STANDARD_VERSION,

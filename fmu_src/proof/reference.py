@@ -90,7 +90,7 @@ def _evaluate_instants(
 def _integrate_model(
     model: Model, tabulated_joint: TabulatedJoint, inputs: dict[str, float], stimulus: Stimulus
 ) -> list[Outputs]:
-    """Outputs of a model with states under constant inputs, integrated with a relative tolerance of 1e-12."""
+    """Integrate a model with states at constant inputs, with a relative tolerance of 1e-12: its outputs."""
     from scipy.integrate import solve_ivp
 
     names = [v.name for v in model.outputs]

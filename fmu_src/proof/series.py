@@ -46,14 +46,14 @@ def format_csv(series: TimeSeries, digits: int | None = None) -> str:
     return "\n".join([head, *lines, ""])
 
 
-def parse_csv(content: str, location: str) -> TimeSeries:
+def parse_csv(csv_text: str, location: str) -> TimeSeries:
     """Read a time series from CSV text.
 
     location : name of the file for errors
 
     Raises ValueError, one line: missing column time, row of another length, no number, decreasing time.
     """
-    rows = [row for row in csv.reader(io.StringIO(content)) if row]
+    rows = [row for row in csv.reader(io.StringIO(csv_text)) if row]
     head = [name.strip() for name in rows[0]] if rows else []
     if not head or head[0].lower() != TIME_COLUMN or len(rows) < 2:
         raise ValueError(

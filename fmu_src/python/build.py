@@ -26,15 +26,17 @@ _ENTRY_SCRIPT_TEMPLATE_PATH = Path(__file__).with_name("entry.txt")
 """Template of the Python module that pythonfmu loads."""
 
 
-def collect_runtime_sources(kind: JointKind) -> dict[str, str]:
-    """{path inside the private package: text} of the Python code inside an FMU; it requires only numpy.
+def collect_runtime_sources(joint_kind: JointKind) -> dict[str, str]:
+    """Collect the Python code inside an FMU: {path inside the private package: text}; it requires only numpy.
 
     The code is the slave, the joints and all modules that they import. Imports of the public packages are
     rewritten to the private package, so FMUs of different builds can run in one process.
     """
     builtin_packages = [joint.package for joint in KINDS.values() if joint.is_builtin]
-    roots = {"jointfmu", "jointfmu_fmu_src", kind.package.partition(".")[0]}
-    files = find_imported_modules(["jointfmu_fmu_src.python.slave", *builtin_packages, kind.package], roots)
+    roots = {"jointfmu", "jointfmu_fmu_src", joint_kind.package.partition(".")[0]}
+    files = find_imported_modules(
+        ["jointfmu_fmu_src.python.slave", *builtin_packages, joint_kind.package], roots
+    )
     sources = {}
     for name, path in files.items():
         path_inside = _private_module_name(name).replace(".", "/")
@@ -52,12 +54,12 @@ def _private_module_name(module: str) -> str:
     return re.sub(r"^jointfmu\b\.?", "", re.sub(r"^jointfmu_fmu_src\b", "fmus", module))
 
 
-def _rewrite_imports(text: str, root_packages: Collection[str]) -> str:
+def _rewrite_imports(module_text: str, root_packages: Collection[str]) -> str:
     """Rewrite the imports of public packages in a module text to the private package."""
     for root in root_packages:
         package = f"{_PACKAGE_PLACEHOLDER}.{_private_module_name(root)}".rstrip(".")
-        text = re.sub(rf"^from {root}\b", f"from {package}", text, flags=re.MULTILINE)
-    return text
+        module_text = re.sub(rf"^from {root}\b", f"from {package}", module_text, flags=re.MULTILINE)
+    return module_text
 
 
 def build_python_fmu(
@@ -116,7 +118,7 @@ def _run_pythonfmu(script: Path, package: str, output_folder: Path) -> Path:
     """Build an FMU with the installed pythonfmu, and restore sys.path and sys.modules afterwards.
 
     An FMU that runs in this process may have imported its own copy of pythonfmu, which has no libraries, in
-    place of the installed one. If that FMU has equal content, its modules are imported too.
+    place of the installed one. That copy is then removed from sys.modules while this function runs.
     """
     import pythonfmu
 

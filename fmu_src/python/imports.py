@@ -7,13 +7,14 @@ from importlib.util import find_spec
 from pathlib import Path
 
 
-def find_imported_modules(start_modules: Sequence[str], root_packages: Collection[str]) -> dict[str, Path]:
-    """Find {name: file} of modules and of all modules that they import at top level, in `root_packages`.
+def find_imported_modules(entry_modules: Sequence[str], root_packages: Collection[str]) -> dict[str, Path]:
+    """Find {name: file} of `entry_modules` and of the modules that they import at top level.
 
+    The search follows the imports of each module found, within `root_packages`.
     Parent packages of a module are included. Imports inside functions are not: they are optional at run time.
     """
     files: dict[str, Path] = {}
-    pending = list(start_modules)
+    pending = list(entry_modules)
     while pending:
         name = pending.pop()
         if name.partition(".")[0] not in root_packages or name in files:
@@ -32,9 +33,9 @@ def find_imported_modules(start_modules: Sequence[str], root_packages: Collectio
     return files
 
 
-def _list_imports(text: str, package: str) -> Iterator[str]:
+def _list_imports(module_text: str, package: str) -> Iterator[str]:
     """Yield the module names imported at top level; for `from A import B` A and A.B, as B may be a module."""
-    for node in _parse_module(text).body:
+    for node in _parse_module(module_text).body:
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
@@ -45,6 +46,6 @@ def _list_imports(text: str, package: str) -> Iterator[str]:
 
 
 @cache
-def _parse_module(text: str) -> ast.Module:
+def _parse_module(module_text: str) -> ast.Module:
     """Syntax tree of the text of a module; cached, because FMUs contain mostly the same modules."""
-    return ast.parse(text)
+    return ast.parse(module_text)

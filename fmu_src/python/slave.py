@@ -111,7 +111,7 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
             self.register_variable(self._make_variable(item), nested=False)
 
     def _make_variable(self, listed_variable: ListedVariable) -> object:
-        """Variable of pythonfmu for a variable of the model description."""
+        """Make the variable of pythonfmu for a variable of the model description."""
         name = listed_variable.name
         output = listed_variable.causality == "output"
         parameter = listed_variable.causality == "parameter"
@@ -214,9 +214,9 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         return {v.name: self.values[v.name] for v in self.model.inputs}
 
     def find_start_history(self, inputs: dict[str, float]) -> History:
-        """History variables at the start of the load step to given inputs.
+        """History variables at the start of the load step that ends at given inputs.
 
-        If these are the accepted inputs, the accepted load step is repeated from its start.
+        If the given inputs equal the inputs of the accepted load step, that step is repeated from its start.
         """
         if self.accepted_step is None:
             assert self.model.initial_history is not None

@@ -116,7 +116,7 @@ def test_materials_are_physical_and_have_sources():
         assert 2000 < values["density"] < 9000
         assert 5e8 < values["H"] < 1e10
         assert all(known.source for known in material.numbers.values())
-        assert material.numbers["H"].kind == "estimate"  # of one usual state
+        assert material.numbers["H"].origin == "estimate"  # of one usual state
     names = [name for found in read_table("materials").values() for name in (found.name, *found.aliases)]
     assert len(names) == len({name.lower() for name in names})
 
@@ -171,9 +171,11 @@ def test_lengths(text, value):
 
 
 def test_numbers_with_a_sign_between():
-    assert parse_numbers("plate", "200x0.1m", "mm", "m", separator="x", count=2) == pytest.approx([0.2, 0.1])
+    assert parse_numbers("plate", "200x0.1m", "mm", "m", separator="x", number_count=2) == pytest.approx(
+        [0.2, 0.1]
+    )
     assert parse_numbers(
-        "at", "-80,3e1", "mm", "m", separator=",", count=2, lower_bound=None
+        "at", "-80,3e1", "mm", "m", separator=",", number_count=2, lower_bound=None
     ) == pytest.approx([-0.08, 0.03])
 
 
@@ -280,5 +282,5 @@ def test_a_number_that_is_not_plausible_is_asked_about(option, text, message):
 
 def test_sizes_are_asked_about():
     with pytest.raises(ValueError, match=r"--plate = '0.2' is read as 0.2 mm"):
-        parse_values("plate", "0.2x0.15", separator="x", count=2)
-    assert parse_values("plate", "0.2mx0.15m", separator="x", count=2) == pytest.approx([0.2, 0.15])
+        parse_values("plate", "0.2x0.15", separator="x", value_count=2)
+    assert parse_values("plate", "0.2mx0.15m", separator="x", value_count=2) == pytest.approx([0.2, 0.15])

@@ -12,7 +12,7 @@ from jointfmu_tools import cli
 from jointfmu_tools.inputs.fitting import branches, decay
 from jointfmu_tools.inputs.fitting.hysteresis import HysteresisLaw, NonlinearSpring, Oscillator
 from jointfmu_tools.inputs.fitting.least_squares import Solution, Unknown
-from jointfmu_tools.inputs.fitting.measurement import MIN_ROWS, ColumnNames, read_columns
+from jointfmu_tools.inputs.fitting.measurement import MIN_MEASUREMENT_ROW_COUNT, ColumnNames, read_columns
 from jointfmu_tools.inputs.fitting.outcome import FitPlot, FitResult
 from jointfmu_tools.joints.bolted_joint.fit import loop
 from jointfmu_tools.joints.harmonic_drive.fit.hysteresis import COLUMN_NAMES as DRIVE_HEADS
@@ -504,7 +504,7 @@ def test_level_and_exponent_of_a_vibration_go_along_the_valley_of_its_stiffness(
 )
 def test_titles_as_people_write_them(tmp_path, titles):
     mark = next(m for m in ";\t," if m in titles)
-    rows = "".join(f"{i}{mark}{2 * i}\n" for i in range(MIN_ROWS))
+    rows = "".join(f"{i}{mark}{2 * i}\n" for i in range(MIN_MEASUREMENT_ROW_COUNT))
     (tmp_path / "a.csv").write_text(f"{titles}\n{rows}")
     kind, table = read_columns(tmp_path / "a.csv", DRIVE_HEADS)
     assert kind == "loops"

@@ -16,11 +16,11 @@ class DiesAtFive(FmuRamp):
 
     runs_per_job = 4
 
-    def run(self, index, settings):
-        if index == 5:
+    def run(self, run_number, settings):
+        if run_number == 5:
             os._exit(11)
         columns = {"tau": [0.0, 1.0], "K_WTS": [1.0, 1.0]}
-        return {"run": index, "parameters": dict(settings), "columns": columns}
+        return {"run": run_number, "parameters": dict(settings), "columns": columns}
 
 
 def run_until_five_dies(fmu: Path, out: Path, **execution: Any) -> tuple[int, int, dict[int, str]]:

@@ -220,9 +220,9 @@ def test_an_arm_that_is_wrong_is_refused_in_one_line(
 @pytest.mark.parametrize("name", list_system_names())
 def test_every_input_is_fed_once_and_lags_stand_where_joints_push(name: str) -> None:
     found = load_system(name)
-    fed = [(w.target, w.input) for w in find_signals(found)]
+    fed = [(w.target_component, w.input) for w in find_signals(found)]
     assert len(fed) == len(set(fed))
-    pushed = {w.target for w in find_signals(found) if w.source in found.joints}
+    pushed = {w.target_component for w in find_signals(found) if w.source_component in found.joints}
     assert set(find_lag_parameters(found)) == pushed
     assert len(find_connections(found)) == len(found.connections)
 

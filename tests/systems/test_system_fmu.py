@@ -189,7 +189,9 @@ class Opened:
         self.messages = []
         self._unpacked = unpack_fmu(Path(file))
         folder, description = self._unpacked.__enter__()
-        self._opened = open_instance(folder, description, "system", self.messages, model_exchange=exchange)
+        self._opened = open_instance(
+            folder, description, "system", self.messages, uses_model_exchange=exchange
+        )
         self.host = self._opened.__enter__()
 
     def __enter__(self):

@@ -326,7 +326,7 @@ def test_an_archive_is_complete_and_its_connections_fit(
         assert units[start] == units[end]
         ends.append(end)
     assert len(ends) == len(set(ends))
-    assert set(ends) == {f"{w.target}.{w.input}" for w in find_signals(found)}
+    assert set(ends) == {f"{w.target_component}.{w.input}" for w in find_signals(found)}
     assert {u.get("name") for u in root.iterfind("ssd:Units/ssc:Unit", space)} == set(units.values())
     described = {n: content for n, content in members.items() if n.endswith(".fmu")}
     assert {f"resources/{fmu}.fmu" for fmu in fmus.values()} == set(described)
@@ -567,7 +567,7 @@ def test_a_master_of_the_other_kind_needs_the_other_lag(
 
     def run(master: MasterKind, h: float) -> Array:
         thin = round(step / h)
-        return simulate_system(found, built / "fmi2", master, step=h, stop=stop)[shown][::thin]
+        return simulate_system(found, built / "fmi2", master, communication_step=h, stop=stop)[shown][::thin]
 
     exact = run(in_turn, 0.25 * step)
     scale = np.max(np.abs(exact))

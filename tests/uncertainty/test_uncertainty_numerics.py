@@ -140,8 +140,8 @@ def test_bands_of_a_linear_output():
     assert found.refused_samples.count == 0
     indices = propagate.compute_sensitivity(task, found, A[:4096], B[:4096]).outputs["K_N"]
     exact = np.array([0.36, 0.0025]) / 0.3625
-    assert np.all(np.abs(indices.first - exact) < 0.01)  # Sobol' sequence of 4096
-    assert np.all(np.abs(indices.total - exact) < 0.01)
+    assert np.all(np.abs(indices.first_order - exact) < 0.01)  # Sobol' sequence of 4096
+    assert np.all(np.abs(indices.total_order - exact) < 0.01)
 
 
 def test_an_uncertain_load_scales_the_ramp():
@@ -191,8 +191,8 @@ def test_ishigami():
     found = propagate.sobol_indices_of(
         ishigami(A)[None], ishigami(B)[None], np.stack([ishigami(m)[None] for m in mixed])
     )
-    assert found.first[0] == pytest.approx(ISHIGAMI_FIRST, abs=0.01)  # seen: 0.003
-    assert found.total[0] == pytest.approx(ISHIGAMI_TOTAL, abs=0.01)
+    assert found.first_order[0] == pytest.approx(ISHIGAMI_FIRST, abs=0.01)  # seen: 0.003
+    assert found.total_order[0] == pytest.approx(ISHIGAMI_TOTAL, abs=0.01)
 
 
 def test_confidence_intervals_of_independent_samples():
@@ -204,8 +204,8 @@ def test_confidence_intervals_of_independent_samples():
         found = propagate.sobol_indices_of(
             ishigami(A)[None], ishigami(B)[None], np.stack([ishigami(m)[None] for m in mixed])
         )
-        hits[0] += np.abs(found.first[0] - ISHIGAMI_FIRST) <= found.first_half[0]
-        hits[1] += np.abs(found.total[0] - ISHIGAMI_TOTAL) <= found.total_half[0]
+        hits[0] += np.abs(found.first_order[0] - ISHIGAMI_FIRST) <= found.first_order_half_width[0]
+        hits[1] += np.abs(found.total_order[0] - ISHIGAMI_TOTAL) <= found.total_half_width[0]
     assert np.all(hits >= 88), hits
 
 
@@ -216,5 +216,5 @@ def test_refused_rows_count_for_nothing():
     some = propagate.sobol_indices_of(f_A[:, keep], f_B[:, keep], f_AB[..., keep])
     f_A[:, ~keep] = np.nan
     holes = propagate.sobol_indices_of(f_A, f_B, f_AB)
-    for name in ("first", "total", "first_half", "total_half"):
+    for name in ("first_order", "total_order", "first_order_half_width", "total_half_width"):
         assert getattr(holes, name) == pytest.approx(getattr(some, name), rel=1e-10)

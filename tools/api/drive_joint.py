@@ -40,11 +40,13 @@ class DriveJoint(Joint):
         """Tangent stiffness K_WTS (n) [N.m/rad] under torques (n) [N.m]."""
         return np.asarray(self._midline_curve.derivatives(np.abs(self.wind_up(torque)), 1)[1])[()]
 
-    def _warn_beyond_table(self, name: str, values: ArrayLike, end: float, unit: str) -> None:
+    def _warn_beyond_table(self, input_name: str, values: ArrayLike, table_end: float, unit: str) -> None:
         """Warn, as the FMU does, if a torque or wind-up is beyond the end of the tabulated midline."""
         largest = float(np.max(np.abs(np.asarray(values, dtype=np.float64)), initial=0.0))
-        if largest > end:
-            text = f"{name} = {largest:.6g} {unit} is outside [-{end:.6g}, {end:.6g}] {unit}"
+        if largest > table_end:
+            text = (
+                f"{input_name} = {largest:.6g} {unit} is outside [-{table_end:.6g}, {table_end:.6g}] {unit}"
+            )
             warnings.warn(f"{self.name}: {text}: {EXTRAPOLATION_WARNING}", stacklevel=3)
 
     @property

@@ -118,7 +118,7 @@ class Frame(TableDisplay, Mapping[str, Array]):
         return len(self._columns)
 
     def _build_table(self) -> Table:
-        """Table of the columns, with the first and the last rows if there are many."""
+        """Build the table of the columns, with the first and the last rows if there are many."""
         count = max((column.size for column in self._columns.values()), default=0)
         shown = (
             [*range(count)]

@@ -46,7 +46,7 @@ class Law(TableDisplay):
         return flatten_parameters(self.parameters)
 
     def _build_table(self) -> Table:
-        """Table that is printed for the law: its parameters."""
+        """Build the table that is printed for the law: its parameters."""
         fields = {name: item.metadata for name, item in flatten_fields(type(self.parameters))}
         rows = [
             (name, *format_quantity(value, fields[name].get("unit")), fields[name]["doc"])

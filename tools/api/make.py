@@ -192,7 +192,7 @@ def _option_help(option: Option) -> str:
 
 
 def make_fit_table(outcome: FitResult) -> Table:
-    """Table of the result of a fit: each parameter with its uncertainty; doubts and notes as lines."""
+    """Make a table of the result of a fit: each parameter with its uncertainty; doubts and notes as lines."""
     rows = [
         (
             row["name"],
@@ -238,7 +238,7 @@ class Fit(TableDisplay):
         return create_joint(self.outcome.parameters, self.outcome.facts, self.outcome.warnings())
 
     def _build_table(self) -> Table:
-        """Table that is printed for the fit: each parameter with its uncertainty."""
+        """Build the table that is printed for the fit: each parameter with its uncertainty."""
         return make_fit_table(self.outcome)
 
     def plot(self) -> "Figure":

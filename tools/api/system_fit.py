@@ -37,7 +37,7 @@ class SystemFit(TableDisplay):
     system_file: Path
 
     def _build_table(self) -> Table:
-        """Table that is printed for the fit: each parameter with its uncertainty."""
+        """Build the table that is printed for the fit: each parameter with its uncertainty."""
         return make_fit_table(self.outcome)
 
     def plot(self) -> "Figure":

@@ -57,7 +57,7 @@ def check_command_outputs(outputs: Mapping[str, FileKind], args: argparse.Namesp
 
 
 def check_input_overwrite(files: Iterable[Path], args: argparse.Namespace, outputs: Iterable[str]) -> None:
-    """Raise ValueError if one of the files to write is also an input of the command.
+    """Raise ValueError if a file to be written is also an input of the command.
 
     Every existing file that the command line names counts as an input, except the outputs.
     """

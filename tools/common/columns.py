@@ -242,7 +242,7 @@ def parse_number(cell: str) -> float | None:
 def _apply_stated_headings(
     path: Path, cells: Sequence[str], stated_headings: Mapping[str, ColumnHead]
 ) -> list[str]:
-    """Replace headings by the names and units that the caller states for them.
+    """Replace the headings of columns for which the caller states name and unit.
 
     Raises ValueError if the file does not have a stated heading.
     """
@@ -329,7 +329,7 @@ def _resolve_alias(
     allowed_units: Mapping[str, UnitSizes],
     aliases: Mapping[str, Sequence[str]],
 ) -> str:
-    """Column that a heading means: the one that has the name as an alias and allows the unit.
+    """Find the column that a heading means: the column that has the name as an alias and allows the unit.
 
     If there is none: the name itself.
     """

@@ -39,23 +39,24 @@ class StiffnessComparison:
     stiffness: Array
 
     @property
-    def ratio(self) -> Array:
-        """Ratio (n) [1] of the stiffness to p/(GAMMA h)."""
+    def stiffness_over_estimate(self) -> Array:
+        """Stiffness over the estimate p/(GAMMA h) (n) [1]."""
         return np.asarray(self.stiffness / predicted_stiffness(self.pressure, self.rms_height))
 
     @property
     def is_doubtful(self) -> bool:
-        """Whether the ratio or its inverse exceeds MAX_STIFFNESS_OVER_ESTIMATE at any pressure."""
+        """Whether stiffness over estimate, or its inverse, exceeds its limit at any pressure."""
         return bool(
             np.any(
-                (self.ratio > MAX_STIFFNESS_OVER_ESTIMATE) | (self.ratio < 1.0 / MAX_STIFFNESS_OVER_ESTIMATE)
+                (self.stiffness_over_estimate > MAX_STIFFNESS_OVER_ESTIMATE)
+                | (self.stiffness_over_estimate < 1.0 / MAX_STIFFNESS_OVER_ESTIMATE)
             )
         )
 
     def __str__(self) -> str:
         at = f"at {_format_range(self.pressure / 1e6)} MPa, h = {1e6 * self.rms_height:.3g} um"
         return (
-            f"stiffness by the law: {_format_range(self.ratio)} times the roughness "
+            f"stiffness by the law: {_format_range(self.stiffness_over_estimate)} times the roughness "
             f"estimate p/({PERSSON_GAMMA:g} h) {at}"
         )
 
@@ -65,7 +66,7 @@ class StiffnessComparison:
             self.pressure,
             self.stiffness,
             predicted_stiffness(self.pressure, self.rms_height),
-            self.ratio,
+            self.stiffness_over_estimate,
         )
         names = ("pressure", "stiffness", "expected", "ratio")
         points = [dict(zip(names, map(float, row), strict=True)) for row in zip(*columns, strict=True)]
@@ -144,10 +145,10 @@ def assess_law_stiffness(
         )
     if comparison is not None and comparison.is_doubtful:
         warnings.append(
-            f"stiffness by the law: {_format_range(comparison.ratio)} times the roughness estimate K/A_0 = "
-            f"p/({PERSSON_GAMMA:g} h) with h = {1e6 * comparison.rms_height:.3g} um, allowed is a factor of "
-            f"{MAX_STIFFNESS_OVER_ESTIMATE:g}: measure the joint, or use the roughness estimate "
-            "(docs/validity.md)"
+            f"stiffness by the law: {_format_range(comparison.stiffness_over_estimate)} times the roughness "
+            f"estimate K/A_0 = p/({PERSSON_GAMMA:g} h) with h = {1e6 * comparison.rms_height:.3g} um, "
+            f"allowed is a factor of {MAX_STIFFNESS_OVER_ESTIMATE:g}: measure the joint, or use the "
+            "roughness estimate (docs/validity.md)"
         )
     return Plausibility(comparison, tuple(warnings))
 

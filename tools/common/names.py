@@ -9,8 +9,8 @@ MIN_SIMILARITY = 0.6
 """Smallest ratio of equal letters [1] (`SequenceMatcher.ratio`) of two similar names."""
 
 
-def find_similar_names(name: str, known_names: Iterable[str], count: int = 3) -> list[str]:
-    """Find the known names that are most similar to a name, at most `count`; empty if none is similar.
+def find_similar_names(name: str, known_names: Iterable[str], max_name_count: int = 3) -> list[str]:
+    """Find the known names that are most similar to a name; the list is empty if none is similar.
 
     Case and separators are ignored. The similarity of the letters decides first, then the ratios of the
     numbers in both names. If a name has four digits or more in a row, these may be two numbers (csg32100 is
@@ -28,4 +28,4 @@ def find_similar_names(name: str, known_names: Iterable[str], count: int = 3) ->
         return -similarity, *ratios
 
     similar = [(d, known) for known in known_names if (d := distance(known))[0] <= -MIN_SIMILARITY]
-    return [known for _, known in sorted(similar, key=lambda pair: pair[0])[:count]]
+    return [known for _, known in sorted(similar, key=lambda pair: pair[0])[:max_name_count]]

@@ -55,7 +55,7 @@ class RigidBodyBalance:
         cls,
         bodies: Sequence[ElasticBody],
         approach_matrices: Sequence[sp.csr_matrix],
-        loads: Sequence[Array],
+        nodal_loads: Sequence[Array],
         supported_unknowns: Sequence[IndexArray],
         quadrature_position: Array,
         *,
@@ -70,21 +70,21 @@ class RigidBodyBalance:
         supports_carry_load : True: supports may carry load. False: they only stop motions that are not loaded
         """
         motions = [rigid_motions(body) for body in bodies]
-        force = np.concatenate([m.T @ load for m, load in zip(motions, loads, strict=True)])
+        force = np.concatenate([m.T @ load for m, load in zip(motions, nodal_loads, strict=True)])
         rigid_approach = np.hstack([trace @ m for m, trace in zip(motions, approach_matrices, strict=True)])
         at_supports = [m[rows] for m, rows in zip(motions, supported_unknowns, strict=True)]
         unsupported = block_diag(
             *[null_space(rows, rcond=MIN_RELATIVE_MOTION) if rows.size else np.eye(6) for rows in at_supports]
         )
         balanced = unsupported if supports_carry_load else np.eye(force.size)
-        scale = sum(float(np.abs(load).sum()) for load in loads)
+        scale = sum(float(np.abs(load).sum()) for load in nodal_loads)
         corners = np.asarray(ConvexHull(quadrature_position).vertices, dtype=np.int64)
         return cls(
             balanced.T @ force, rigid_approach @ balanced, rigid_approach @ unsupported, scale, corners
         )
 
     def check_loads(self) -> None:
-        """Raise RuntimeError if the contact cannot balance the loads by pushing, or if no load closes it."""
+        """Raise RuntimeError if contact without tension cannot balance the loads, or no load closes it."""
         if not _has_independent_columns(self.unsupported_motion_approach):
             raise RuntimeError("a body can move rigidly: supports and contact do not hold it")
         if self.generalised_load.size == 0:

@@ -113,7 +113,7 @@ class JointSolution:
 
     @property
     def contact_field(self) -> ContactField:
-        """Contact pressure at the quadrature points, with area and total force of the finite elements."""
+        """Contact pressure [Pa], area [m2] and position [m] at the quadrature points of the contact."""
         interface = self.bolted_contact.contact_interface
         return ContactField(
             area=interface.quadrature_area,

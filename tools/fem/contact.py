@@ -155,7 +155,7 @@ class ContactModel:
 
     def solve(
         self,
-        loads: Sequence[Array],
+        nodal_loads: Sequence[Array],
         initial_pressure: float,
         initial_solution: "ContactSolution | None" = None,
     ) -> "ContactSolution":
@@ -168,7 +168,7 @@ class ContactModel:
         ------
         RuntimeError : there is no equilibrium: the contact cannot balance the loads, or a body is not held
         """
-        balance = self.rigid_body_balance(loads)
+        balance = self.rigid_body_balance(nodal_loads)
         balance.check_loads()
         gap = self.unloaded_gap(*self.contact_interface.quadrature_position.T)
         offset = (
@@ -177,7 +177,7 @@ class ContactModel:
             else initial_solution.approach_offset
         )
         free_load = np.concatenate(
-            [load[free] for load, free in zip(loads, self._free_unknowns, strict=True)]
+            [load[free] for load, free in zip(nodal_loads, self._free_unknowns, strict=True)]
         )
         energy = replace(self._unloaded_energy, load_vector=free_load)
         minimum = energy.minimise(
@@ -187,7 +187,7 @@ class ContactModel:
             energy.quadrature_area * self.pressure_law.derivatives(minimum.approach, 1)[0]
         )
         return ContactSolution(
-            self, tuple(loads), self._expand_displacement(minimum.displacement), offset, minimum
+            self, tuple(nodal_loads), self._expand_displacement(minimum.displacement), offset, minimum
         )
 
     def _expand_displacement(self, free_displacement: Array) -> tuple[Array, ...]:
@@ -198,13 +198,13 @@ class ContactModel:
             all_unknowns[free] = values
         return displacement
 
-    def rigid_body_balance(self, loads: Sequence[Array]) -> RigidBodyBalance:
+    def rigid_body_balance(self, nodal_loads: Sequence[Array]) -> RigidBodyBalance:
         """Generalised forces of loads (n) [N] and contact on the rigid-body motions of the bodies."""
         interface = self.contact_interface
         return RigidBodyBalance.from_loads(
             self.bodies,
             [interface.interpolation_matrix @ trace for trace in self.approach_matrices()],
-            loads,
+            nodal_loads,
             self.supported_unknowns(),
             interface.quadrature_position,
             supports_carry_load=self.fixed_unknowns is not None,
@@ -295,7 +295,7 @@ def nodal_displacement_matrix(
 
 
 def _select_supports(body: ElasticBody, stop_all_motions: bool) -> IndexArray:
-    """Three unknowns of a body that stop its rigid-body motions in the contact plane.
+    """Select three unknowns of a body that stop its rigid-body motions in the contact plane.
 
     stop_all_motions : add three unknowns that stop the motion along z and the rotations about x and y.
         Without these three, the body rests on the contact.

@@ -20,7 +20,7 @@ from .bolted_contact import BoltedContact, JointSolution
 from .contact import PressureLaw
 from .geometry import Assembly
 
-SUCCESSIVE_ELEMENT_SIZE_RATIO = math.sqrt(2.0)
+COARSE_OVER_FINE_ELEMENT_SIZE = math.sqrt(2.0)
 """Ratio of the element sizes of two successive meshes [1]."""
 RESULT_UNITS = {"peak": "Pa", "between": "Pa", "K_N": "N/m", "K_rx": "N.m/rad", "K_ry": "N.m/rad"}
 """Results that are compared, with their units: peak pressure, mean pressure midway between neighbouring
@@ -46,12 +46,12 @@ class MeshResult:
 def refinement_series(mesh_count: int, base_refinement: float = 1.0) -> list[float]:
     """Refinements [1] of `mesh_count` meshes of increasing fineness.
 
-    Each mesh is SUCCESSIVE_ELEMENT_SIZE_RATIO times finer than the one before.
+    Each mesh is COARSE_OVER_FINE_ELEMENT_SIZE times finer than the one before.
 
     base_refinement : refinement [1] of the second mesh, or of the only one
     """
     return (
-        [base_refinement * SUCCESSIVE_ELEMENT_SIZE_RATIO**k for k in range(-1, mesh_count - 1)]
+        [base_refinement * COARSE_OVER_FINE_ELEMENT_SIZE**k for k in range(-1, mesh_count - 1)]
         if mesh_count > 1
         else [base_refinement]
     )
@@ -144,7 +144,7 @@ def first_equivalent_bolts(bolt_positions: Array, has_moment: bool) -> NDArray[n
 
 
 def check_bolt_symmetry(contact_field: ContactField, bolt_positions: Array, has_moment: bool) -> list[str]:
-    """Warning if the peak pressures around equivalent bolts differ by more than MAX_PEAK_DIFFERENCE.
+    """List a warning if the peak pressures around equivalent bolts differ by over MAX_PEAK_DIFFERENCE.
 
     Returns a list of one message, or an empty list.
     """

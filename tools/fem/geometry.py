@@ -307,19 +307,19 @@ def check_thickness(assembly: Assembly) -> None:
             )
 
 
-def _find_obstacle(body: BodyGeometry, x: float, y: float, head_radius: float) -> str | None:
+def _find_obstacle(body: BodyGeometry, bolt_x: float, bolt_y: float, head_radius: float) -> str | None:
     """Reason why a bolt head (a disc) does not lie flat on a body; None if it does."""
     flange, *rest = body.layers()
     if isinstance(body, TappedPlate):
         return None  # no head lies on a tapped plate
-    if not _contains_disc(x, y, head_radius, flange.outline_half_lengths) or _overlaps_disc(
-        x, y, head_radius, flange.opening_half_lengths
+    if not _contains_disc(bolt_x, bolt_y, head_radius, flange.outline_half_lengths) or _overlaps_disc(
+        bolt_x, bolt_y, head_radius, flange.opening_half_lengths
     ):
         return f"reaches beyond the {'plate' if isinstance(body, Plate) else 'flange'}"
     if (
         rest
-        and _overlaps_disc(x, y, head_radius, rest[0].outline_half_lengths)
-        and not _contains_disc(x, y, head_radius, rest[0].opening_half_lengths)
+        and _overlaps_disc(bolt_x, bolt_y, head_radius, rest[0].outline_half_lengths)
+        and not _contains_disc(bolt_x, bolt_y, head_radius, rest[0].opening_half_lengths)
     ):
         return "runs into a wall"
     return None

@@ -28,7 +28,7 @@ ELEMENTS_THROUGH_THICKNESS = 2
 """Number of elements through the thickness of the layer at the contact, at refinement 1."""
 MAX_COUNT_REDUCTION = 0.3
 """Largest fraction by which the number of graded elements is rounded down [1]."""
-LAYER_GROWTH = 2.5
+SUCCESSIVE_LAYER_HEIGHT_RATIO = 2.5
 """Ratio of the heights of two successive elements below a rigid bolt head [1]."""
 
 
@@ -255,7 +255,7 @@ def extrusion_levels(
         rows = max(round(min_rows * refinement), int(np.ceil(thickness / max_element_height - 1e-9)), 1)
         levels = thickness * np.arange(rows + 1) / rows
         if layer_index == 0 and first_height is not None:
-            levels = thickness - graded_levels(thickness, first_height, LAYER_GROWTH)[::-1]
+            levels = thickness - graded_levels(thickness, first_height, SUCCESSIVE_LAYER_HEIGHT_RATIO)[::-1]
         heights += list(layer.bottom_distance + levels[1:])
         owner += [layer_index] * (len(levels) - 1)
     return np.array(heights), owner

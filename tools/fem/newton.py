@@ -17,7 +17,7 @@ RELATIVE_TOLERANCE = 1e-11
 """Residual force over applied load [1], both as sums of magnitudes, at which Newton's method converges."""
 MAX_NEWTON_STEPS = 60
 """Largest number of steps of Newton's method [1]."""
-LINEAR_TOLERANCE_RATIO = 0.1
+MIN_LINEAR_OVER_NEWTON_TOLERANCE = 0.1
 """Tightest tolerance of the linear solver over the tolerance of Newton's method [1]."""
 MAX_CG_ITERATIONS = 12
 """Number of conjugate-gradient iterations above which the tangent is factorised anew."""
@@ -90,7 +90,7 @@ class ContactEnergy:
             spring = self.quadrature_area * k
             if factor is None or slow:
                 factor = Cholesky(K + T.T @ sp.diags_array(spring) @ T)
-            accuracy = min(1e-2, max(size, LINEAR_TOLERANCE_RATIO * RELATIVE_TOLERANCE / size))
+            accuracy = min(1e-2, max(size, MIN_LINEAR_OVER_NEWTON_TOLERANCE * RELATIVE_TOLERANCE / size))
             tangent = LinearOperator(K.shape, partial(self._apply_tangent, spring), dtype=np.float64)
             move, count = _solve_cg(tangent, residual, factor, accuracy)
             slow = count > MAX_CG_ITERATIONS
@@ -105,7 +105,7 @@ class ContactEnergy:
         )
 
     def _apply_tangent(self, contact_stiffness: Array, displacement: Array) -> Array:
-        """Tangent times displacement u: (K + T^T diag(k) T) u, with the contact stiffness k (q) [N/m]."""
+        """Multiply the tangent by u: (K + T^T diag(k) T) u, with the contact stiffness k (q) [N/m]."""
         return np.asarray(
             self.stiffness_matrix @ displacement
             + self.approach_matrix.T @ (contact_stiffness * (self.approach_matrix @ displacement))
@@ -125,7 +125,7 @@ class ContactEnergy:
         """
 
         def energy_slope(step_length: float) -> float:
-            """Slope of the energy [J] with respect to the step length."""
+            """Derivative [J] of the energy with respect to the step length [1]."""
             p = self.pressure_law(approach + step_length * approach_change)[0]
             return (
                 initial_slope + step_length * slope_rate + float(approach_change @ (self.quadrature_area * p))

@@ -32,7 +32,9 @@ class SymmetricFactorisation:
     """
 
     def __init__(self, matrix: sp.csr_matrix, reflections: Sequence[sp.csr_matrix]) -> None:
-        bases = [_symmetry_basis(matrix.shape[0], class_) for class_ in _symmetry_classes(reflections)]
+        bases = [
+            _symmetry_basis(matrix.shape[0], class_) for class_ in _combine_reflection_signs(reflections)
+        ]
         # the product of the matrix and a class is in the class: one row of each image is enough
         self._factors = [Cholesky(_representative_rows(basis) @ matrix @ basis) for basis in bases]
         self._ends = np.cumsum([basis.shape[1] for basis in bases])[:-1]
@@ -96,15 +98,15 @@ def _largest_in_columns(matrix: Array | sp.spmatrix) -> Array:
     return largest.toarray().ravel() if sp.issparse(largest) else largest
 
 
-def _symmetry_classes(reflections: Sequence[sp.csr_matrix]) -> Iterator[list[sp.csr_matrix]]:
-    """Yield the classes of displacements: each reflection with a sign, 1 symmetric and -1 antisymmetric."""
+def _combine_reflection_signs(reflections: Sequence[sp.csr_matrix]) -> Iterator[list[sp.csr_matrix]]:
+    """Yield the reflections times 1 (symmetric displacements) or -1 (antisymmetric), in each combination."""
     for signs in product((1.0, -1.0), repeat=len(reflections)):
         yield [sign * reflection for sign, reflection in zip(signs, reflections, strict=True)]
 
 
-def _symmetry_basis(size: int, signed_reflections: Sequence[sp.csr_matrix]) -> sp.csc_matrix:
+def _symmetry_basis(unknown_count: int, signed_reflections: Sequence[sp.csr_matrix]) -> sp.csc_matrix:
     """Orthonormal basis (size, m) [1] of the displacements that signed reflections do not change."""
-    projection = sp.identity(size, format="csr")
+    projection = sp.identity(unknown_count, format="csr")
     for reflection in signed_reflections:
         projection = 0.5 * (projection + reflection @ projection)
     projection = projection.tocsc()
@@ -118,7 +120,10 @@ def _symmetry_basis(size: int, signed_reflections: Sequence[sp.csr_matrix]) -> s
 
 
 def _representative_rows(basis: sp.csc_matrix) -> sp.csr_matrix:
-    """Matrix (m, n) [1] that gives the coordinates of a vector of a class from one row of each image."""
+    """Matrix (m, n) [1] that maps a displacement in the span of a basis (n, m) to its coordinates.
+
+    Each coordinate is read from one row: the first one in the column of the basis.
+    """
     first = basis.indptr[:-1]
     entries = 1.0 / basis.data[first], (np.arange(basis.shape[1]), basis.indices[first])
     return sp.csr_matrix(entries, shape=basis.shape[::-1])

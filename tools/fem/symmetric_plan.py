@@ -34,13 +34,13 @@ ELEMENTS_AROUND_BOLT = 12
 """Number of elements around a bolt at refinements up to 1; 16 if axes of symmetry cross in the bolt."""
 FIRST_SIZE_AT_HEADS = 0.2
 """Size of the elements at the edges of a rigid head over the width of its bearing ring [1]; refinement 1."""
-RING_GROWTH = 1.5
+SUCCESSIVE_RING_WIDTH_RATIO = 1.5
 """Ratio of the widths of two successive rings between hole and edge of the head [1]."""
-OUTER_RING_GROWTH = 2.0
+SUCCESSIVE_OUTER_RING_WIDTH_RATIO = 2.0
 """Ratio of the widths of two successive rings outside of the head [1]."""
-OUTER_RINGS_WIDTH = 1.4
+OUTER_RINGS_WIDTH_OVER_BEARING_RING_WIDTH = 1.4
 """Width of the rings outside of the head over the width of its bearing ring [1]."""
-MAX_CLEARANCE_SHARE = 0.5
+MAX_OUTER_RINGS_WIDTH_OVER_CLEARANCE = 0.5
 """Largest width of the rings outside of the head over the clearance to the next edge or head [1]."""
 SIZE_GROWTH_AROUND_RINGS = 0.8
 """Growth of the elements outside of graded rings, see `set_element_sizes` [1]."""
@@ -57,8 +57,8 @@ class PlanSymmetry:
     diagonal: bool
 
     @classmethod
-    def of(cls, assembly: Assembly) -> "PlanSymmetry":
-        """Find the symmetries of an assembly. The diagonal is checked only if x and y are symmetries."""
+    def of_assembly(cls, assembly: Assembly) -> "PlanSymmetry":
+        """Find the symmetries of an assembly. The diagonal is checked only if x and y are symmetries too."""
         bolts = assembly.bolts.positions
 
         def maps_bolts(images: Array) -> bool:
@@ -78,7 +78,7 @@ def mesh_symmetric_plan(assembly: Assembly, refinement: float, graded_heads: boo
     Raises ValueError if an edge of a body runs under a bolt head.
     """
     radii = _ring_radii(assembly, refinement, graded_heads)
-    symmetry = PlanSymmetry.of(assembly)
+    symmetry = PlanSymmetry.of_assembly(assembly)
     growth = SIZE_GROWTH_AROUND_RINGS if graded_heads else ELEMENT_SIZE_GROWTH
     corners = _mesh_sector(assembly, symmetry, refinement, radii[-1], growth)
     rings = _make_rings(corners, assembly.bolts.positions, radii)
@@ -110,10 +110,17 @@ def _ring_radii(assembly: Assembly, refinement: float, graded_heads: bool) -> Ar
     if not graded_heads:
         return np.array([hole, head])
     first = first_size_at_heads(assembly, refinement)
-    half = graded_levels(0.5 * (head - hole), first, RING_GROWTH)
+    half = graded_levels(0.5 * (head - hole), first, SUCCESSIVE_RING_WIDTH_RATIO)
     inside = np.concatenate([hole + half, head - half[-2::-1]])
-    width = min(OUTER_RINGS_WIDTH * (head - hole), MAX_CLEARANCE_SHARE * clearance)
-    outside = graded_levels(width, first, OUTER_RING_GROWTH)[1:] if width > 0.5 * first else np.zeros(0)
+    width = min(
+        OUTER_RINGS_WIDTH_OVER_BEARING_RING_WIDTH * (head - hole),
+        MAX_OUTER_RINGS_WIDTH_OVER_CLEARANCE * clearance,
+    )
+    outside = (
+        graded_levels(width, first, SUCCESSIVE_OUTER_RING_WIDTH_RATIO)[1:]
+        if width > 0.5 * first
+        else np.zeros(0)
+    )
     return np.concatenate([inside, head + outside])
 
 
@@ -171,15 +178,15 @@ def _mesh_sector(
     return points[:, cells]
 
 
-def _add_sector(occ: object, assembly: Assembly, symmetry: PlanSymmetry) -> int:
+def _add_sector(geometry_kernel: object, assembly: Assembly, symmetry: PlanSymmetry) -> int:
     """Add the face of one sector of the plan to gmsh; return its tag."""
     x, y = 2.0 * np.max(list(layer_rectangles(assembly)), axis=0)
     low_x, low_y = 0.0 if symmetry.x else -x, 0.0 if symmetry.y else -y
     if not symmetry.diagonal:
-        return int(occ.addRectangle(low_x, low_y, 0.0, x - low_x, y - low_y))  # type: ignore[attr-defined]
-    corners = [occ.addPoint(*p, 0.0) for p in ((0.0, 0.0), (x, 0.0), (x, x))]  # type: ignore[attr-defined]
-    lines = [occ.addLine(corners[i], corners[(i + 1) % 3]) for i in range(3)]  # type: ignore[attr-defined]
-    return int(occ.addPlaneSurface([occ.addCurveLoop(lines)]))  # type: ignore[attr-defined]
+        return int(geometry_kernel.addRectangle(low_x, low_y, 0.0, x - low_x, y - low_y))  # type: ignore[attr-defined]
+    corners = [geometry_kernel.addPoint(*p, 0.0) for p in ((0.0, 0.0), (x, 0.0), (x, x))]  # type: ignore[attr-defined]
+    lines = [geometry_kernel.addLine(corners[i], corners[(i + 1) % 3]) for i in range(3)]  # type: ignore[attr-defined]
+    return int(geometry_kernel.addPlaneSurface([geometry_kernel.addCurveLoop(lines)]))  # type: ignore[attr-defined]
 
 
 def _divide_circles(gmsh_model: object, bolts: Array, radii: tuple[float, float], refinement: float) -> None:
@@ -199,7 +206,7 @@ def _divide_circles(gmsh_model: object, bolts: Array, radii: tuple[float, float]
 
 
 def _make_rings(quadrilaterals: Array, bolts: Array, radii: Array) -> Array:
-    """Rings of quadrilaterals (2, 4, m) [m] around bolts, between successive circles.
+    """Make the rings of quadrilaterals (2, 4, m) [m] around bolts, between successive circles.
 
     The rings continue the given mesh inwards: each edge of the mesh on the largest circle becomes a column of
     quadrilaterals.
@@ -220,7 +227,7 @@ def _make_rings(quadrilaterals: Array, bolts: Array, radii: Array) -> Array:
 
 
 def _merge_nodes(quadrilaterals: Array) -> tuple[Array, IndexArray]:
-    """Points (2, n) [m] and cells (4, m) of quadrilaterals (2, 4, m) [m] that share nodes."""
+    """Merge the nodes of quadrilaterals (2, 4, m) [m] to shared points (2, n) [m] and cells (4, m)."""
     count = quadrilaterals.shape[2]
     points = quadrilaterals.reshape(2, -1)
     pairs = cKDTree(points.T).query_pairs(MERGE_DISTANCE, output_type="ndarray")

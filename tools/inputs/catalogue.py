@@ -5,17 +5,17 @@ from typing import NamedTuple
 
 
 class SourcedNumber(NamedTuple):
-    """Number with its origin and source.
+    """Number with its origin (catalogue, estimate, ...) and its source.
 
     value          : [SI]
-    kind           : origin, one of parameters.ORIGINS
+    origin         : one of parameters.ORIGINS
     source         : document, table or estimate that the number is taken from
     is_upper_limit : whether the number is printed as an upper limit of the quantity, not as its value
     interval       : lower and upper end of an estimate [SI]; None if unknown
     """
 
     value: float
-    kind: str
+    origin: str
     source: str
     is_upper_limit: bool = False
     interval: tuple[float, float] | None = None

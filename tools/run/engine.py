@@ -139,7 +139,7 @@ class VariableJoint:
         return engine
 
     def _find_engine(self, hidden_values: Mapping[str, Any]) -> tuple[JointEngine, dict[str, Any]]:
-        """Engine of the joint with these hidden parameters, and the exposed parameters that are set in it.
+        """Find the engine with these hidden parameters, or open it; returns also its exposed parameters.
 
         hidden_values : {name: value} of parameters that the FMU does not expose
         """
@@ -183,9 +183,9 @@ class LoadedLibrary:
         self._booleans = {name for name, item in fields.items() if "allowed" in item.metadata}
         messages = self._messages
 
-        def log(environment: Any, status: int, category: bytes, text: bytes) -> None:
+        def log(environment: Any, status: int, message_category: bytes, message: bytes) -> None:
             """Callback of the instance: store its log message."""
-            messages.append((status, text.decode("utf-8", "replace")))
+            messages.append((status, message.decode("utf-8", "replace")))
 
         self._logger = _LOGGER_TYPE(log)
         folder = tempfile.mkdtemp(prefix="jointfmu-")
@@ -292,7 +292,7 @@ class CompiledJoint(LoadedLibrary):
         return PathResult(dict(zip(self._names, (*values.T, *results.T), strict=True)), warnings)
 
 
-def _close_library(library: Any, instance: Any, logger: Any, folder: str) -> None:
+def _close_library(library: Any, instance: Any, logger: Any, library_folder: str) -> None:
     """Free the instance of a library, unload the library and remove its folder.
 
     logger : log callback of the instance; it must exist until the library is unloaded
@@ -305,7 +305,7 @@ def _close_library(library: Any, instance: Any, logger: Any, folder: str) -> Non
         _ctypes.FreeLibrary(library._handle)
     else:
         _ctypes.dlclose(library._handle)
-    shutil.rmtree(folder, ignore_errors=True)
+    shutil.rmtree(library_folder, ignore_errors=True)
 
 
 class PythonJoint:

@@ -89,10 +89,10 @@ class Instance:
         callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(free)
         self.fmu.instantiate(callbacks=callbacks, loggingOn=logging)
 
-    def _log(self, status: int, category: bytes | None, text: bytes) -> None:
+    def _log(self, status: int, message_category: bytes | None, message: bytes) -> None:
         """Callback of the FMU: store a log message."""
-        shown = text.decode("utf-8", "replace")
-        self.messages.append(LogMessage(status, shown, (category or b"").decode("utf-8", "replace")))
+        shown = message.decode("utf-8", "replace")
+        self.messages.append(LogMessage(status, shown, (message_category or b"").decode("utf-8", "replace")))
         if status:
             self._log_lines.append(" ".join(shown.split()))
 
@@ -104,9 +104,9 @@ class Instance:
         else:
             self.fmu.enterInitializationMode(startTime=start_time, stopTime=stop_time)
 
-    def set_values(self, values: Mapping[str, object]) -> None:
+    def set_values(self, value_by_name: Mapping[str, object]) -> None:
         """Set variables of the FMU, of any type, with one call for each."""
-        for name, value in values.items():
+        for name, value in value_by_name.items():
             getattr(self.fmu, f"set{self._fmi_type(name)}")([self.variables[name].valueReference], [value])
 
     def get_value(self, variable_name: str) -> Any:
@@ -156,9 +156,9 @@ class RealVariables:
             else (fmu.fmi3SetFloat64, fmu.fmi3GetFloat64)
         )
 
-    def set_values(self, *values: float) -> None:
+    def set_values(self, *value_by_name: float) -> None:
         """Set all variables of the group."""
-        self._values[:] = list(values)
+        self._values[:] = list(value_by_name)
         self._set(*self._arguments)
 
     def get_values(self) -> list[float]:
@@ -169,25 +169,25 @@ class RealVariables:
 
 @contextmanager
 def open_instance(
-    folder: str,
+    fmu_folder: str,
     model_description: "ModelDescription",
     fmu_label: str,
     log_lines: list[str],
-    model_exchange: bool = False,
+    uses_model_exchange: bool = False,
 ) -> Iterator[Instance]:
     """Context with an instance of an unpacked FMU, which is freed at the end.
 
-    fmu_label      : name of the FMU in error messages
-    log_lines      : list to which warnings and errors of the FMU are appended
-    model_exchange : whether to use model exchange; default co-simulation
+    fmu_label           : name of the FMU in error messages
+    log_lines           : list to which warnings and errors of the FMU are appended
+    uses_model_exchange : whether to use model exchange; default co-simulation
 
     Raises ValueError if the library cannot be loaded, RuntimeError if it does not instantiate, both with one
     line.
     """
     try:
-        instance = Instance(folder, model_description, "host", model_exchange, log_lines)
+        instance = Instance(fmu_folder, model_description, "host", uses_model_exchange, log_lines)
     except Exception as error:  # fmpy raises bare Exception, ctypes its own
-        reason = " ".join(str(error.__context__ or error).replace(f"{folder}{os.sep}", "").split())
+        reason = " ".join(str(error.__context__ or error).replace(f"{fmu_folder}{os.sep}", "").split())
         raise ValueError(
             f"{fmu_label}: the library in the FMU cannot be loaded ({reason.rstrip('.')})"
         ) from None

@@ -55,15 +55,17 @@ class Check:
         return bool(self.deviation <= self.tolerance)
 
 
-def run_default_ramp(fmu_name: str, folder: Path, step_factor: float = 1.0) -> ramp.RampResult:
+def run_default_ramp(fmu_name: str, fmu_folder: Path, step_factor: float = 1.0) -> ramp.RampResult:
     """Run the default load ramp of an FMU, with its step times a factor."""
     r = MODELS[fmu_name].ramp
-    return ramp.run_ramp(folder / f"{fmu_name}.fmu", r.input_name, r.end_value, r.value_step * step_factor)
+    return ramp.run_ramp(
+        fmu_folder / f"{fmu_name}.fmu", r.input_name, r.end_value, r.value_step * step_factor
+    )
 
 
-def check_ramp(fmu_name: str, folder: Path, ramp_result: ramp.RampResult) -> list[Check]:
+def check_ramp(fmu_name: str, fmu_folder: Path, ramp_result: ramp.RampResult) -> list[Check]:
     """Check the ramp of an FMU: repeat it with larger steps, then run the check that its joint defines."""
-    worst = _coarse_ramp_deviation(fmu_name, folder, ramp_result)
+    worst = _coarse_ramp_deviation(fmu_name, fmu_folder, ramp_result)
     checks = [
         Check(
             fmu_name,
@@ -74,26 +76,26 @@ def check_ramp(fmu_name: str, folder: Path, ramp_result: ramp.RampResult) -> lis
     ]
     module = load_tool_module(KINDS[MODELS[fmu_name].joint], "checks")
     if module and fmu_name in module.RAMP_CHECKS:
-        compared, largest = module.RAMP_CHECKS[fmu_name](folder, ramp_result)
+        compared, largest = module.RAMP_CHECKS[fmu_name](fmu_folder, ramp_result)
         checks.append(Check(fmu_name, compared, largest, INTEGRATION_TOLERANCE))
     return checks
 
 
-def compare_flavour(fmu_name: str, folder: Path, expected_ramp: ramp.RampResult) -> Check:
+def compare_flavour(fmu_name: str, fmu_folder: Path, expected_ramp: ramp.RampResult) -> Check:
     """Compare `expected_ramp` with the ramp of the same FMU in another folder (FMI 3.0 or Python).
 
     The ramp in the other folder has ten times larger steps.
     """
-    worst = _coarse_ramp_deviation(fmu_name, folder, expected_ramp)
-    return Check(fmu_name, f"flavour {folder.name}: every output the same", worst, FLAVOUR_TOLERANCE)
+    worst = _coarse_ramp_deviation(fmu_name, fmu_folder, expected_ramp)
+    return Check(fmu_name, f"flavour {fmu_folder.name}: every output the same", worst, FLAVOUR_TOLERANCE)
 
 
-def _coarse_ramp_deviation(fmu_name: str, folder: Path, ramp_result: ramp.RampResult) -> float:
+def _coarse_ramp_deviation(fmu_name: str, fmu_folder: Path, ramp_result: ramp.RampResult) -> float:
     """Largest deviation [1] of any output if the load ramp has ten times larger steps.
 
     ramp_result : load ramp with the default steps
     """
-    coarse = run_default_ramp(fmu_name, folder, _COARSE_STEP_FACTOR).columns
+    coarse = run_default_ramp(fmu_name, fmu_folder, _COARSE_STEP_FACTOR).columns
     return max(
         relative_deviation(coarse[column], fine[:: int(_COARSE_STEP_FACTOR)])
         for column, fine in ramp_result.columns.items()
@@ -146,7 +148,7 @@ def relative_deviation(value: object, expected_value: object) -> float:
     return float(np.max(np.abs(a - b))) / scale if scale > 0.0 else float(np.max(np.abs(a)))
 
 
-def compute_published_points(folder: Path) -> list[ValidatedPoint]:
+def compute_published_points(fmu_folder: Path) -> list[ValidatedPoint]:
     """Compute published points by running FMUs, with `compute_through_fmu` of the joints that define it."""
     rows = []
     for kind in KINDS.values():
@@ -154,7 +156,7 @@ def compute_published_points(folder: Path) -> list[ValidatedPoint]:
         if compute is None:
             continue
         for point in (p for paper in load_published_numbers(kind).papers for p in read_points(paper)):
-            value = compute(point, folder)
+            value = compute(point, fmu_folder)
             if value is not None:
                 rows.append(compare_point(point, value))
     return rows

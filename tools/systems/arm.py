@@ -231,23 +231,25 @@ def read_arm(path: Path, section: object) -> tuple[Arm, ComponentSections, list[
     return arm, sections, wires
 
 
-def _find_gear_ratio(path: Path, name: str, drive: Mapping[str, object]) -> float:
+def _find_gear_ratio(path: Path, axis_name: str, drive: Mapping[str, object]) -> float:
     """Gear ratio of the drive of an axis: stated in its section, or by its parameter file."""
     model = drive.get("model")
     if model not in MODELS or "ratio" not in MODELS[model].parameter_fields():
         models = [n for n, m in MODELS.items() if "ratio" in m.parameter_fields() and len(m.inputs) >= 4]
-        raise ValueError(f"arm.{name}.model = {model!r}, allowed are {', '.join(models)}")
+        raise ValueError(f"arm.{axis_name}.model = {model!r}, allowed are {', '.join(models)}")
     entry = drive.get("ratio")
     if isinstance(entry, Mapping) and isinstance(entry.get("value"), int | float):
         return float(entry["value"])
     joint = MODELS[model].joint
-    file = load_joint_file(path.parent, f"arm.{name}", joint, drive) or load_default(joint)
+    file = load_joint_file(path.parent, f"arm.{axis_name}", joint, drive) or load_default(joint)
     return float(file.values_by_name["ratio"])
 
 
-def _make_axis_sections(arm: Arm, name: str, drive: Mapping[str, object], ratio: float) -> ComponentSections:
-    """Sections of a system file for the components of one axis of the arm."""
-    k = arm.axis_names.index(name)
+def _make_axis_sections(
+    arm: Arm, axis_name: str, drive: Mapping[str, object], speed_ratio: float
+) -> ComponentSections:
+    """Make the sections of a system file for the components of one axis of the arm."""
+    k = arm.axis_names.index(axis_name)
     link = arm.links[k]
     end = np.array([[link.travel for link in arm.links]])
     inertia = float(arm.axis_inertias(end[0])[k])
@@ -257,24 +259,26 @@ def _make_axis_sections(arm: Arm, name: str, drive: Mapping[str, object], ratio:
     points = TorqueCurve.fit_control_points(phase, load)  # digits beyond 1e-8 N.m depend on the processor
     times = {"start": (arm.start, "s"), "duration": (arm.duration, "s")}
     return {
-        f"{name}_motor": _make_section("AngleProfile", times | {"height": (ratio * link.travel, "rad")}),
-        f"{name}_drive": dict(drive),
-        f"{name}_link": _make_section(
+        f"{axis_name}_motor": _make_section(
+            "AngleProfile", times | {"height": (speed_ratio * link.travel, "rad")}
+        ),
+        f"{axis_name}_drive": dict(drive),
+        f"{axis_name}_link": _make_section(
             "RotationalInertia", {"J": (inertia, "kg.m2"), "m": (0.0, "kg"), "l": (0.0, "m")}
         ),
-        f"{name}_load": _make_section(
+        f"{axis_name}_load": _make_section(
             "TorqueCurve", times | {key: (round(value, 8) + 0.0, "N.m") for key, value in points.items()}
         ),
     }
 
 
-def _make_section(model: str, values: Mapping[str, tuple[float, str]]) -> dict[str, object]:
-    """Section of a system file for a component with derived values.
+def _make_section(model: str, derived_values: Mapping[str, tuple[float, str]]) -> dict[str, object]:
+    """Make the section of a system file for a component with derived values.
 
-    values : {name: (value, unit)}
+    derived_values : {name: (value, unit)}
     """
     source = "kinematics and inverse dynamics of [arm]"
     return {"model": model} | {
         name: {"value": value, "unit": unit, "kind": "derived", "source": source}
-        for name, (value, unit) in values.items()
+        for name, (value, unit) in derived_values.items()
     }

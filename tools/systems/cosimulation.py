@@ -19,26 +19,27 @@ from .wiring import find_lag_parameters, find_signals
 
 def simulate_system(
     system: System,
-    folder: Path,
+    fmu_folder: Path,
     master: MasterKind = MASTERS[0],
-    step: float | None = None,
+    communication_step: float | None = None,
     stop: float | None = None,
 ) -> dict[str, Array]:
     """Simulate a system; returns {COMPONENT.OUTPUT: values} of all connected outputs, and `time` [s].
 
-    folder : folder of the FMUs (FMI 2.0)
-    master : parallel (all components step together) or sequential (joints step after the bodies)
-    step   : communication step [s]; None: interval of the system
-    stop   : stop time [s]; None: stop time of the system
+    fmu_folder         : folder of the FMUs (FMI 2.0)
+    master             : parallel (all components step together) or sequential (joints step after the bodies)
+    communication_step : communication step [s]; None: interval of the system
+    stop               : stop time [s]; None: stop time of the system
 
     Raises ValueError if an FMU is missing or returns an error.
     """
-    step = system.interval if step is None else step
-    count = round((system.stop_time if stop is None else stop) / step)
+    communication_step = system.interval if communication_step is None else communication_step
+    count = round((system.stop_time if stop is None else stop) / communication_step)
     signals, names, lag_parameters = find_signals(system), find_fmu_names(system), find_lag_parameters(system)
-    inputs = {name: [w for w in signals if w.target == name] for name in system.components}
+    inputs = {name: [w for w in signals if w.target_component == name] for name in system.components}
     outputs_read = {
-        name: list(dict.fromkeys(w.output for w in signals if w.source == name)) for name in system.components
+        name: list(dict.fromkeys(w.output for w in signals if w.source_component == name))
+        for name in system.components
     }
     columns = [f"{name}.{output}" for name in outputs_read for output in outputs_read[name]]
     position = {column: k for k, column in enumerate(columns)}
@@ -48,18 +49,20 @@ def simulate_system(
         for name, component in system.components.items():
             start = {key: entry.value for key, entry in list_values(component).items()}
             start |= dict.fromkeys(lag_parameters.get(name, ()), master.force_lag)
-            path = folder / f"{names[name]}.fmu"
+            path = fmu_folder / f"{names[name]}.fmu"
             input_names = [w.input for w in inputs[name]]
             slaves[name] = stack.enter_context(Slave(path, start, input_names, outputs_read[name]))
         joints = [name for name, component in system.components.items() if component.parameter_file]
         others = [name for name in slaves if name not in joints]
-        sources = {name: [position[f"{w.source}.{w.output}"] for w in inputs[name]] for name in slaves}
+        sources = {
+            name: [position[f"{w.source_component}.{w.output}"] for w in inputs[name]] for name in slaves
+        }
         ends = dict(zip(outputs_read, accumulate(map(len, outputs_read.values())), strict=True))
         spans = {name: slice(ends[name] - len(outputs), ends[name]) for name, outputs in outputs_read.items()}
         current = [0.0] * len(columns)
 
         def set_inputs(component_names: list[str]) -> None:
-            """Set the inputs of components from the outputs of the others."""
+            """Set the inputs of components from the outputs of the components connected to them."""
             for name in component_names:
                 slaves[name].set_inputs(*[current[k] for k in sources[name]])
 
@@ -77,10 +80,10 @@ def simulate_system(
             for group in groups:
                 set_inputs(group)
                 for name in group:
-                    slaves[name].do_step(k * step, step)
+                    slaves[name].do_step(k * communication_step, communication_step)
                 get_outputs(group)
             rows[k + 1] = current
-    time = np.asarray(step * np.arange(count + 1), dtype=np.float64)
+    time = np.asarray(communication_step * np.arange(count + 1), dtype=np.float64)
     return {"time": time} | {column: rows[:, k] for column, k in position.items()}
 
 
@@ -94,7 +97,9 @@ def simulate_arm(system: System) -> dict[str, Array]:
     """
     compiled = CompiledSystem(assemble_system(system))
     loads = {f"{name}_load" for name in system.arm.axis_names}
-    names = dict.fromkeys(f"{s.source}.{s.output}" for s in find_signals(system) if s.source not in loads)
+    names = dict.fromkeys(
+        f"{s.source_component}.{s.output}" for s in find_signals(system) if s.source_component not in loads
+    )
     names |= dict.fromkeys(f"tip.{x}" for x in "xyz")
     time = system.interval * np.arange(round(system.stop_time / system.interval) + 1, dtype=np.float64)
     rows = compiled.simulate({}, time, {}, [*names])

@@ -67,21 +67,23 @@ class Decay:
     messages: tuple[str, ...]
 
 
-def simulate_example_decays(folder: Path) -> dict[str, list[Decay]]:
+def simulate_example_decays(fmu_folder: Path) -> dict[str, list[Decay]]:
     """Simulate decays with slip for all shipped systems of one vibrating joint, {system: decays}.
 
-    folder : folder of the FMUs (FMI 2.0)
+    fmu_folder : folder of the FMUs (FMI 2.0)
     """
     pulls = [
         (name, joint, joint.vibration_test.deflection_for_slip)
         for name, joint in find_vibrating_joints().items()
     ]
-    return {name: simulate_decays(joint, folder, pull.deflection, [pull.load]) for name, joint, pull in pulls}
+    return {
+        name: simulate_decays(joint, fmu_folder, pull.deflection, [pull.load]) for name, joint, pull in pulls
+    }
 
 
 def simulate_decays(
     joint: VibratingJoint,
-    folder: Path,
+    fmu_folder: Path,
     initial_deflection: float,
     loads: Sequence[float] | None = None,
     inertia: float | None = None,
@@ -89,7 +91,7 @@ def simulate_decays(
 ) -> list[Decay]:
     """Simulate free decays of the body of a system on its joint, one for each load.
 
-    folder             : folder of the FMUs (FMI 2.0) of joint and body
+    fmu_folder         : folder of the FMUs (FMI 2.0) of joint and body
     initial_deflection : [m or rad] from the working point
     loads              : loads in SI units; None: the largest example load of the joint
     inertia            : [kg.m2 or kg] of the body; None: inertia in the system
@@ -99,27 +101,27 @@ def simulate_decays(
     """
     parameters = {**joint.parameters, **(settings or {})}
     loads = (
-        [max(joint.vibration_test.find_example_loads(folder / f"{joint.fmu_name}.fmu", parameters))]
+        [max(joint.vibration_test.find_example_loads(fmu_folder / f"{joint.fmu_name}.fmu", parameters))]
         if loads is None
         else loads
     )
     inertia = joint.inertia if inertia is None else inertia
     return [
-        _simulate_decay(joint, folder, load, parameters, inertia, initial_deflection)
+        _simulate_decay(joint, fmu_folder, load, parameters, inertia, initial_deflection)
         for load in track_progress(loads, "ring", len(loads))
     ]
 
 
 def _simulate_decay(
     joint: VibratingJoint,
-    folder: Path,
+    fmu_folder: Path,
     load: float,
     parameters: Mapping[str, Any],
     inertia: float,
     initial_deflection: float,
 ) -> Decay:
     """Simulate the free decay at one load, and compute frequency and damping by the joint's loops."""
-    body, path = joint.vibration_test, folder / f"{joint.fmu_name}.fmu"
+    body, path = joint.vibration_test, fmu_folder / f"{joint.fmu_name}.fmu"
     rest, partner = body.find_working_point(path, load, parameters), PARTNERS[body.body_model]
     states = [v.name for v in partner.outputs[: partner.state_count]]
     # away from zero: monotonic loading, as the FMU starts at zero
@@ -131,7 +133,9 @@ def _simulate_decay(
         Slave(
             path, {**settings, body.motion_inputs[0]: pulled}, body.motion_inputs, (body.force_output,)
         ) as slave,
-        Slave(folder / f"{body.body_model}.fmu", start, [v.name for v in partner.inputs], states) as moving,
+        Slave(
+            fmu_folder / f"{body.body_model}.fmu", start, [v.name for v in partner.inputs], states
+        ) as moving,
     ):
         signal = (
             simulate_motion(slave, moving, rest.force, step, PERIOD_COUNT * STEPS_PER_PERIOD)[:, 0]
@@ -194,7 +198,7 @@ def _evaluate_loops(
 
 
 def fit_masing_law(loop: loops.HysteresisLoop, viscous_damping: float) -> HysteresisLaw:
-    """Hysteresis law that follows Masing's rule, from a simulated loop.
+    """Fit a hysteresis law that follows Masing's rule to a simulated loop.
 
     Its branch is the mean of both branches of the loop.
     """

@@ -79,13 +79,13 @@ class Slave:
 
 
 def simulate_motion(
-    joint: Slave, body: Slave, load: float, step: float, step_count: int, is_force_delayed: bool = False
+    joint: Slave, body: Slave, load: float, time_step: float, step_count: int, is_force_delayed: bool = False
 ) -> Array:
     """Simulate position and speed (step_count + 1, 2) of a body on a joint under a constant load [N or N.m].
 
     joint            : inputs position and speed, output the force on the body
     body             : inputs load and force, outputs position and speed
-    step             : communication step [s]
+    time_step        : communication step [s]
     is_force_delayed : whether the body gets the force of the previous communication point, as with a parallel
         master; otherwise the current force
     """
@@ -95,18 +95,18 @@ def simulate_motion(
     (force,) = joint.get_outputs()
     for k in range(step_count):
         body.set_inputs(load, force)
-        body.do_step(k * step, step)
+        body.do_step(k * time_step, time_step)
         if is_force_delayed:
             (force,) = joint.get_outputs()
         states[k + 1] = body.get_outputs()
         joint.set_inputs(*states[k + 1])
-        joint.do_step(k * step, step)
+        joint.do_step(k * time_step, time_step)
         if not is_force_delayed:
             (force,) = joint.get_outputs()
     return states
 
 
-def peak_frequency(signal: Array, step: float) -> float:
+def peak_frequency(signal: Array, time_step: float) -> float:
     """Angular frequency [rad/s] of the highest peak in the spectrum of a signal without its mean."""
     n = signal.size
     windowed = (signal - signal.mean()) * np.hanning(n)
@@ -114,7 +114,7 @@ def peak_frequency(signal: Array, step: float) -> float:
     spectrum = np.log(np.abs(np.fft.rfft(windowed, size)) + np.finfo(float).tiny)
     k = int(np.argmax(spectrum[1:-1])) + 1
     left, top, right = spectrum[k - 1 : k + 2]
-    return float(2.0 * np.pi * (k + 0.5 * (left - right) / (left - 2.0 * top + right)) / (size * step))
+    return float(2.0 * np.pi * (k + 0.5 * (left - right) / (left - 2.0 * top + right)) / (size * time_step))
 
 
 def damping_ratio(signal: Array) -> float:

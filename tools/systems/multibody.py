@@ -352,7 +352,7 @@ def _joint_transform(link: Link, position: Number) -> Matrix:
 
 
 def _motion_transform(rotation: Matrix, origin: Vector) -> Matrix:
-    """Transform (6, 6) of motion vectors to another frame.
+    """Matrix (6, 6) that transforms spatial motion vectors to another frame.
 
     rotation : (3, 3) maps components to the new frame; origin : (3) [m] of the new frame, in the old one
     """
@@ -369,9 +369,9 @@ def _z_rotation(angle: Number) -> Matrix:
     return [[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]]
 
 
-def _unit_vector(index: int, size: Number) -> Vector:
+def _unit_vector(index: int, coordinate_count: Number) -> Vector:
     """Unit vector along one coordinate of a number of coordinates."""
-    return [size if k == index else 0.0 for k in range(6)]
+    return [coordinate_count if k == index else 0.0 for k in range(6)]
 
 
 def _cross_motion(velocity: Vector, motion: Vector) -> Vector:
@@ -402,9 +402,9 @@ def _dot(a: Sequence[Number], b: Sequence[Number]) -> Number:
     return sum(terms[1:], terms[0]) if terms else 0.0
 
 
-def _is_zero(x: Number) -> bool:
+def _is_zero(number: Number) -> bool:
     """Whether a Number is a constant zero, not a symbol."""
-    return isinstance(x, float) and x == 0.0
+    return isinstance(number, float) and number == 0.0
 
 
 def _add(a: Sequence[Number], b: Sequence[Number]) -> Vector:

@@ -159,7 +159,7 @@ class VibrationTest:
 
 
 def load_vibration_test(joint: str) -> VibrationTest:
-    """Vibration test of a kind of joint; raises ValueError if the joint defines none."""
+    """Import the vibration test of a kind of joint; raises ValueError if the joint defines none."""
     tool_module = load_tool_module(KINDS[joint], "ringing")
     if tool_module is None:
         joints = [name for name, kind in KINDS.items() if load_tool_module(kind, "ringing")]
@@ -239,7 +239,9 @@ def find_vibrating_joint(system: System, joint: str | None = None) -> VibratingJ
         raise ValueError(f"joint {name!r} is not in {system.name}, allowed are {', '.join(joints)}")
     body = load_vibration_test(joints[name].joint_kind)
     body_names = [
-        w.source for w in find_signals(system) if (w.target, w.input) == (name, body.motion_inputs[0])
+        w.source_component
+        for w in find_signals(system)
+        if (w.target_component, w.input) == (name, body.motion_inputs[0])
     ]
     moving = system.components[body_names[0]] if body_names else None
     if joints[name].model_name != body.model_name or moving is None or moving.model_name != body.body_model:
@@ -250,9 +252,12 @@ def find_vibrating_joint(system: System, joint: str | None = None) -> VibratingJ
     return VibratingJoint(body, joints[name], find_fmu_names(system)[name], moving, key)
 
 
-def simulate_example_vibrations(folder: Path) -> dict[str, list[FreeVibration]]:
-    """Simulate all shipped systems of one vibrating joint, {system: results}; `folder` has FMI 2.0 FMUs."""
-    return {name: simulate_vibrations(joint, folder) for name, joint in find_vibrating_joints().items()}
+def simulate_example_vibrations(fmu_folder: Path) -> dict[str, list[FreeVibration]]:
+    """Simulate all shipped systems of one vibrating joint, {system: results}.
+
+    fmu_folder : folder with FMUs of FMI 2.0
+    """
+    return {name: simulate_vibrations(joint, fmu_folder) for name, joint in find_vibrating_joints().items()}
 
 
 def find_vibrating_joints() -> dict[str, VibratingJoint]:
@@ -265,36 +270,39 @@ def find_vibrating_joints() -> dict[str, VibratingJoint]:
 
 
 def simulate_vibrations(
-    joint: VibratingJoint, folder: Path, loads: Sequence[float] | None = None, inertia: float | None = None
+    joint: VibratingJoint,
+    fmu_folder: Path,
+    loads: Sequence[float] | None = None,
+    inertia: float | None = None,
 ) -> list[FreeVibration]:
     """Simulate free vibrations of a body on its joint without friction, one for each load.
 
-    folder  : folder of the FMUs (FMI 2.0) of joint and body
-    loads   : loads in SI units; None: the example loads of the joint
-    inertia : [kg.m2 or kg] of the body; None: inertia in the system
+    fmu_folder : folder of the FMUs (FMI 2.0) of joint and body
+    loads      : loads in SI units; None: the example loads of the joint
+    inertia    : [kg.m2 or kg] of the body; None: inertia in the system
 
     Raises ValueError if an FMU is missing or returns an error, or if there is no vibration.
     """
     parameters = {**joint.parameters, **joint.vibration_test.frictionless_parameters}
     if loads is None:
-        loads = joint.vibration_test.find_example_loads(folder / f"{joint.fmu_name}.fmu", parameters)
+        loads = joint.vibration_test.find_example_loads(fmu_folder / f"{joint.fmu_name}.fmu", parameters)
     if inertia is None:
         inertia = joint.inertia
     return [
-        _simulate_vibration(joint, folder, load, parameters, inertia)
+        _simulate_vibration(joint, fmu_folder, load, parameters, inertia)
         for load in track_progress(loads, "ring", len(loads))
     ]
 
 
 def frequency_curve(
-    vibrating_joint: VibratingJoint, folder: Path, vibrations: Sequence[FreeVibration]
+    vibrating_joint: VibratingJoint, fmu_folder: Path, vibrations: Sequence[FreeVibration]
 ) -> tuple[Array, Array]:
     """Curve of the frequency sqrt(K/J) (n) [rad/s] over the load (n).
 
     The loads are evenly spaced over the range of the simulated points.
     """
     joint = {**vibrating_joint.parameters, **vibrating_joint.vibration_test.frictionless_parameters}
-    path = folder / f"{vibrating_joint.fmu_name}.fmu"
+    path = fmu_folder / f"{vibrating_joint.fmu_name}.fmu"
     ends, inertia = [point.load for point in vibrations], vibrations[0].inertia
     loads = np.linspace(min(ends), max(ends), FREQUENCY_CURVE_POINT_COUNT)
     stiffness = np.array(
@@ -307,10 +315,10 @@ def frequency_curve(
 
 
 def _simulate_vibration(
-    joint: VibratingJoint, folder: Path, load: float, parameters: Mapping[str, Any], inertia: float
+    joint: VibratingJoint, fmu_folder: Path, load: float, parameters: Mapping[str, Any], inertia: float
 ) -> FreeVibration:
     """Simulate the free vibration at one load, with given parameters of the joint."""
-    body, path = joint.vibration_test, folder / f"{joint.fmu_name}.fmu"
+    body, path = joint.vibration_test, fmu_folder / f"{joint.fmu_name}.fmu"
     rest, partner = body.find_working_point(path, load, parameters), PARTNERS[body.body_model]
     initial, smallest = (
         body.release_force / rest.stiffness,
@@ -328,7 +336,7 @@ def _simulate_vibration(
         Slave(
             path, {**parameters, **body.find_start_values(load)}, body.motion_inputs, (body.force_output,)
         ) as slave,
-        Slave(folder / f"{body.body_model}.fmu", start, forces, states) as mass,
+        Slave(fmu_folder / f"{body.body_model}.fmu", start, forces, states) as mass,
     ):
         return _run_vibration(slave, mass, rest, load, inertia)
 

@@ -98,8 +98,8 @@ def format_structure(
         if version == "2.0":
             node.set("implementation", "CoSimulation")
         connectors = SubElement(node, "ssd:Connectors")
-        outputs = {(wire.source, wire.output) for wire in signals}
-        inputs = {(wire.target, wire.input) for wire in signals}
+        outputs = {(wire.source_component, wire.output) for wire in signals}
+        inputs = {(wire.target_component, wire.input) for wire in signals}
         for kind, variables, used in (("input", model.inputs, inputs), ("output", model.outputs, outputs)):
             for v in (v for v in variables if (component.name, v.name) in used):
                 connector = SubElement(connectors, "ssd:Connector", name=v.name, kind=kind, description=v.doc)
@@ -130,19 +130,19 @@ def file_attributes() -> dict[str, str]:
     return attributes
 
 
-def _add_parameter_binding(node: Element, name: str) -> None:
+def _add_parameter_binding(node: Element, parameter_set_name: str) -> None:
     """Bind the parameter set `parameters/NAME.ssv` to a system or component."""
     bindings = SubElement(node, "ssd:ParameterBindings")
-    SubElement(bindings, "ssd:ParameterBinding", source=f"parameters/{name}.ssv")
+    SubElement(bindings, "ssd:ParameterBinding", source=f"parameters/{parameter_set_name}.ssv")
 
 
-def _add_omsimulator_annotation(system_node: Element, step: float) -> None:
+def _add_omsimulator_annotation(system_node: Element, communication_step: float) -> None:
     """Add the annotation by which OMSimulator selects co-simulation with a fixed step [s]."""
     annotations = SubElement(system_node, "ssd:Annotations")
     annotation = SubElement(annotations, "ssc:Annotation", type="org.openmodelica")
     oms_node = SubElement(annotation, "oms:Annotations", {"xmlns:oms": _OMS_NAMESPACE})
     information = SubElement(oms_node, "oms:SimulationInformation")
-    SubElement(information, "oms:FixedStepMaster", description="oms-ma", stepSize=repr(step))
+    SubElement(information, "oms:FixedStepMaster", description="oms-ma", stepSize=repr(communication_step))
 
 
 ARCHIVE_FOLDERS = {"1.0": ("ssp", "fmi2"), "2.0": ("ssp2", "fmi3")}
@@ -201,7 +201,7 @@ def build_systems(
             if component.base_file and not component.has_own_fmu:
                 for version in FMI_VERSIONS:
                     _check_same_parameters(out / f"fmi{version}" / f"{fmu}.fmu", component.base_file)
-    build_versions = partial(_build_versions, out, variability)
+    build_versions = partial(_build_fmi_versions, out, variability)
     fmu_paths = map_jobs(
         pool, build_versions, "build FMUs of systems", [*built_components], [*built_components.values()]
     )
@@ -229,7 +229,7 @@ def _check_same_parameters(fmu_path: Path, parameter_file: ParameterFile) -> Non
         )
 
 
-def _list_numbers(text: str) -> dict[str, Any]:
+def _list_numbers(file_text: str) -> dict[str, Any]:
     """{structured name: value} of the text of a parameter file, without start values of inputs."""
     found: dict[str, Any] = {}
 
@@ -241,12 +241,12 @@ def _list_numbers(text: str) -> dict[str, Any]:
             elif isinstance(entry, dict):
                 add_entries(entry, f"{prefix}{name}.")
 
-    document = tomllib.loads(text)
+    document = tomllib.loads(file_text)
     add_entries({name: entry for name, entry in document.items() if name != "inputs"}, "")
     return found | {"law": document.get("law")}
 
 
-def _build_versions(out: Path, variability: str, fmu_name: str, component: Component) -> list[Path]:
+def _build_fmi_versions(out: Path, variability: str, fmu_name: str, component: Component) -> list[Path]:
     """Build the FMU of a system's component for all FMI versions, which share the compiled model.
 
     Returns the files.

@@ -41,9 +41,15 @@ def find_largest_stable_step(system: System, results: Mapping[str, Array] | None
         operating_points: list[dict[str, float]] = [{}]
         if results:
             rows = {
-                int(np.argmax(np.abs(results[f"{name}.{w.output}"]))) for w in signals if w.source == name
+                int(np.argmax(np.abs(results[f"{name}.{w.output}"])))
+                for w in signals
+                if w.source_component == name
             }
-            input_values = {w.input: results[f"{w.source}.{w.output}"] for w in signals if w.target == name}
+            input_values = {
+                w.input: results[f"{w.source_component}.{w.output}"]
+                for w in signals
+                if w.target_component == name
+            }
             operating_points = [{key: float(column[k]) for key, column in input_values.items()} for k in rows]
         for inputs in operating_points:
             out = model.evaluate(spring, start | inputs)

@@ -128,26 +128,26 @@ class System:
             for name, value in component.values.items()
         }
 
-    def with_joint(self, file: ParameterFile) -> "System":
+    def with_joint(self, parameter_file: ParameterFile) -> "System":
         """Copy of the system with another parameter file for all joints of its kind without their own FMU.
 
         The bodies and loads at their flanges are scaled to the new joint: it moves as the old one did.
         """
         components = dict(self.components)
         for name, joint in self.joints.items():
-            if joint.joint_kind == file.joint and not joint.has_own_fmu:
+            if joint.joint_kind == parameter_file.joint and not joint.has_own_fmu:
                 changes = {
                     key: value for key, value in joint.values.items() if key not in joint.constant_inputs
                 }
-                changed_file = file.with_values(changes, "user", f"system {self.name}")
-                components[name] = replace(joint, base_file=file, parameter_file=changed_file)
-                find_ratings = KINDS[file.joint].find_flange_ratings
+                changed_file = parameter_file.with_values(changes, "user", f"system {self.name}")
+                components[name] = replace(joint, base_file=parameter_file, parameter_file=changed_file)
+                find_ratings = KINDS[parameter_file.joint].find_flange_ratings
                 assert joint.base_file
-                before, after = find_ratings(joint.base_file.values), find_ratings(file.values)
+                before, after = find_ratings(joint.base_file.values), find_ratings(parameter_file.values)
                 for flange in before:
                     for partner in self._partners_at(f"{name}.{flange}"):
                         components[partner] = _scale_partner(
-                            components[partner], before[flange], after[flange], file.name
+                            components[partner], before[flange], after[flange], parameter_file.name
                         )
         return replace(self, components=components)
 
@@ -166,21 +166,21 @@ class System:
 def _scale_partner(
     partner: Component, rating_before: FlangeRating, rating_after: FlangeRating, joint_name: str
 ) -> Component:
-    """Partner (body or load) scaled from the rated values of one joint to the rated values of another joint.
+    """Scale a partner (body or load) from the rated values of one joint to the rated values of another joint.
 
     Loads scale with the rated load, inertias with the rated load over the motion of the flange. The permanent
     load `ramp_height` also changes by the difference of the friction of both joints.
     """
-    load = rating_after.load / rating_before.load
-    inertia = load * rating_before.motion / rating_after.motion
-    if (load, inertia, rating_after.friction) == (1.0, 1.0, rating_before.friction):
+    load = rating_after.rated_load / rating_before.rated_load
+    inertia = load * rating_before.motion_over_output_motion / rating_after.motion_over_output_motion
+    if (load, inertia, rating_after.static_friction_load) == (1.0, 1.0, rating_before.static_friction_load):
         return partner
     values, sources = dict(partner.values), dict(partner.sources)
     for name, unit in partner.units.items():
         if factor := {"N.m": load, "N": load, "kg.m2": inertia, "kg": inertia}.get(unit):
             values[name] = factor * values[name]
             if name == "ramp_height":
-                values[name] += rating_after.friction - rating_before.friction
+                values[name] += rating_after.static_friction_load - rating_before.static_friction_load
             sources[name] += f"; scaled to {joint_name}"
     return replace(partner, values=values, sources=sources)
 
@@ -192,7 +192,7 @@ def list_system_names() -> tuple[str, ...]:
 
 
 def load_systems() -> dict[str, System]:
-    """{name: system} of all shipped systems."""
+    """Read all shipped systems: {name: system}."""
     return {name: load_system(name) for name in list_system_names()}
 
 
@@ -270,44 +270,46 @@ def _make_system(path: Path, document: Mapping[str, Any]) -> System:
     )
 
 
-def _check_connections(value: Any) -> list[tuple[str, str]]:
+def _check_connections(connections: Any) -> list[tuple[str, str]]:
     """Check the value of `connect` in a system file, and convert it to pairs of ends."""
     pairs = []
-    for pair in value if isinstance(value, list) else [value]:
+    for pair in connections if isinstance(connections, list) else [connections]:
         if not (isinstance(pair, list) and len(pair) == 2 and all(isinstance(end, str) for end in pair)):
             raise ValueError(f'connect = {pair!r}, expected pairs of ends ["load", "motor.flange_a"]')
         pairs.append((pair[0], pair[1]))
     return pairs
 
 
-def _make_component(path: Path, name: str, section: Any) -> Component:
+def _make_component(path: Path, component_name: str, section: Any) -> Component:
     """Make a component from its section of the system file."""
     models = [*MODELS, *PARTNERS]
     if not isinstance(section, Mapping):
-        raise ValueError(f"{name} = {section!r}, expected a section [{name}] with its model")
-    if not is_identifier(name) or name == GROUND:
-        raise ValueError(f"component {name!r}: allowed are {FMU_NAME_RULE}, and not {GROUND!r}")
+        raise ValueError(
+            f"{component_name} = {section!r}, expected a section [{component_name}] with its model"
+        )
+    if not is_identifier(component_name) or component_name == GROUND:
+        raise ValueError(f"component {component_name!r}: allowed are {FMU_NAME_RULE}, and not {GROUND!r}")
     model = section.get("model")
     if not isinstance(model, str) or model not in models:
-        raise ValueError(f"{name}.model = {model!r}, allowed are {', '.join(models)}")
+        raise ValueError(f"{component_name}.model = {model!r}, allowed are {', '.join(models)}")
     body = {key: value for key, value in section.items() if key not in ("model", *PARAMETER_FILE_KEYS)}
     joint_parameters = None
     if model in PARTNERS:
         for key in PARAMETER_FILE_KEYS:
             if key in section:
                 raise ValueError(
-                    f"{name}.{key} = {section[key]!r}, expected none of a {model}, only its values"
+                    f"{component_name}.{key} = {section[key]!r}, expected none of a {model}, only its values"
                 )
         file, declared, inputs = None, dict(flatten_fields(PARTNERS[model].parameter_class)), {}
         needed = getattr(PARTNERS[model].parameter_class, "inertia_name", None)
         if needed and needed not in section:
             missing = declared[needed].metadata
             raise ValueError(
-                f"{name}.{needed} is not stated, expected the {missing['doc']} [{missing['unit']}]"
+                f"{component_name}.{needed} is not stated, expected the {missing['doc']} [{missing['unit']}]"
             )
     else:
         joint = MODELS[model].joint
-        joint_parameters = load_joint_file(path.parent, name, joint, section)
+        joint_parameters = load_joint_file(path.parent, component_name, joint, section)
         file = joint_parameters or load_default(joint)
         declared = {
             key: item for key, item in flatten_fields(type(file.values)) if key in file.values_by_name
@@ -317,12 +319,12 @@ def _make_component(path: Path, name: str, section: Any) -> Component:
     try:
         values, _, sources = read_entries(path, declared, body)
     except ValueError as error:
-        raise ValueError(f"{name}.{str(error).removeprefix(f'{path}: ')}") from None
+        raise ValueError(f"{component_name}.{str(error).removeprefix(f'{path}: ')}") from None
     for key, value in values.items():
         if key not in declared:
-            raise ValueError(f"{name}: unknown name {key!r}, allowed are {', '.join(declared)}")
+            raise ValueError(f"{component_name}: unknown name {key!r}, allowed are {', '.join(declared)}")
         if text := find_problem(key, value, declared[key]):
-            raise ValueError(f"{name}.{text}")
+            raise ValueError(f"{component_name}.{text}")
         values[key] = float(value) if isinstance(value, int) and not isinstance(value, bool) else value
     own, base = joint_parameters is not None, file
     if file:
@@ -330,7 +332,7 @@ def _make_component(path: Path, name: str, section: Any) -> Component:
         file = file.with_values(changes, "user", f"system {path.stem}")
         own |= not changes.keys() <= _variable_fields(model, file).keys()
     units = {key: declared[key].metadata.get("unit", "") for key in values}
-    return Component(name, model, base, file, own, values, units, sources)
+    return Component(component_name, model, base, file, own, values, units, sources)
 
 
 def _variable_fields(model: str, parameter_file: ParameterFile | None) -> dict[str, Any]:

@@ -14,40 +14,43 @@ PARAMETER_FILE_KEYS = {"parameters", "catalogue"}
 """Entries that select a parameter file: a path relative to the system file, or a name in the catalogue."""
 
 
-def load_joint_file(folder: Path, name: str, joint: str, section: Mapping[str, Any]) -> ParameterFile | None:
+def load_joint_file(
+    system_folder: Path, section_name: str, joint: str, section: Mapping[str, Any]
+) -> ParameterFile | None:
     """Load the parameter file that a section of a system file names for a joint.
 
-    None: the section names no file.
+    None : the section names no file.
 
-    folder : folder of the system file
-    joint  : kind of joint
+    system_folder : folder of the system file
+    joint : kind of joint
 
     Raises ValueError with one line that names the entry and what is allowed.
     """
     entries = {key: value for key, value in section.items() if key in PARAMETER_FILE_KEYS}
     if len(entries) > 1:
-        raise ValueError(f"{name} has {' and '.join(sorted(entries))}, state one of them")
+        raise ValueError(f"{section_name} has {' and '.join(sorted(entries))}, state one of them")
     for key, value in entries.items():
         if not isinstance(value, str):
-            raise ValueError(f"{name}.{key} = {value!r}, expected a text")
+            raise ValueError(f"{section_name}.{key} = {value!r}, expected a text")
     if "catalogue" in entries:
-        return _load_catalogue_item(name, joint, entries["catalogue"])
-    return load_parameter_file(folder / entries["parameters"], joint) if entries else None
+        return _make_catalogue_item(section_name, joint, entries["catalogue"])
+    return load_parameter_file(system_folder / entries["parameters"], joint) if entries else None
 
 
-def _load_catalogue_item(name: str, joint: str, catalogue_item_name: str) -> ParameterFile:
-    """Load the catalogue item of section `name` as `jointfmu new` does; ValueError if it is unknown."""
+def _make_catalogue_item(section_name: str, joint: str, catalogue_item_name: str) -> ParameterFile:
+    """Make the catalogue item that a section names, as `jointfmu new` does; ValueError if it is unknown."""
     tool_module = load_tool_module(KINDS[joint], "new")
     if tool_module is None or "catalogue" not in {
         option.name for option in tool_module.NEW_JOINT_COMMAND.options
     }:
         raise ValueError(
-            f"{name}.catalogue = {catalogue_item_name!r}, expected none of a {joint}: it has no catalogue"
+            f"{section_name}.catalogue = {catalogue_item_name!r}, expected none of a {joint}: "
+            "it has no catalogue"
         )
     try:
         return _make_catalogue_file(joint, catalogue_item_name)
     except ValueError as error:
-        raise ValueError(f"{name}: {error}") from None
+        raise ValueError(f"{section_name}: {error}") from None
 
 
 @cache

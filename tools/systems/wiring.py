@@ -14,11 +14,11 @@ from .system import GROUND, Component, System
 
 
 class Signal(NamedTuple):
-    """Signal from an output of the component `source` to an input of the component `target`."""
+    """Signal from `output` of the component `source_component` to `input` of `target_component`."""
 
-    source: str
+    source_component: str
     output: str
-    target: str
+    target_component: str
     input: str
 
 
@@ -201,11 +201,11 @@ def _check_kinematic_loops(connections: Sequence[tuple[ConnectionEnd, Connection
     """Raise ValueError if bodies and joints form a closed loop."""
     parents: dict[str, str] = {}
 
-    def find_root(name: str) -> str:
+    def find_root(component_name: str) -> str:
         """Name of the first component of the chain to which a component is connected."""
-        while parents.get(name, name) != name:
-            name = parents[name]
-        return name
+        while parents.get(component_name, component_name) != component_name:
+            component_name = parents[component_name]
+        return component_name
 
     for first, second in connections:
         if first.is_joint and second.is_body and first.component and second.component:

@@ -149,7 +149,7 @@ def get_checked_spot_distribution(law: InterfaceLaw) -> SpotDistribution:
 
 
 def _check_distribution_loads(law: InterfaceLaw) -> tuple[SpotDistribution, list[Number]]:
-    """Contact spots of a law, and their total loads [N] at the log-areas MIN_LOG_AREA, 0 and MAX_LOG_AREA.
+    """Check the total loads [N] of the contact spots at the log-areas MIN_LOG_AREA, 0 and MAX_LOG_AREA.
 
     Raises ValueError if a load or the reference area is not representable as a float.
     """

@@ -66,11 +66,11 @@ class RegimeTerm(Protocol):
 
     @property
     def lower_log_area(self) -> Number:
-        """Log-area [1] at which the regime begins; None: minus infinity."""
+        """Log-area [1] of the spots at which the regime begins; None: minus infinity."""
 
     @property
     def upper_log_area(self) -> Number:
-        """Log-area [1] at which the regime ends; None: infinity."""
+        """Log-area [1] of the spots at which the regime ends; None: infinity."""
 
     def evaluate_spot(self, log_area: Number) -> Number:
         """Quantity of a single spot at its log-area t; zero outside the regime."""

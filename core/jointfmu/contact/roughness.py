@@ -51,7 +51,7 @@ def rms_height(Ra: Number) -> Number:
 
 
 def combine_heights(rms_height1: Number, rms_height2: Number) -> Number:
-    """Combined rms height h [m] of two statistically independent surfaces, from their rms heights [m]."""
+    """Combine rms heights [m] of two statistically independent surfaces: rms height h [m] of their gap."""
     return np.sqrt(rms_height1**2 + rms_height2**2)
 
 

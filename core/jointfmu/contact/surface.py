@@ -35,7 +35,7 @@ class ArealSurface(CheckedParameters):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CommonFlankParameters(CheckedParameters):
-    """Parameter of the Weierstrass-Mandelbrot function common to both flanks."""
+    """Frequency ratio gamma of the Weierstrass-Mandelbrot function, which both flanks have in common."""
 
     gamma: float = quantity_field("1", "frequency ratio of the Weierstrass-Mandelbrot function", gt=1.0)
 

@@ -21,13 +21,13 @@ MAX_UNPACKED_SIZE = 1 << 30
 """Largest unpacked size of all members [byte]."""
 MAX_TEXT_SIZE = 1 << 26
 """Largest unpacked size [byte] of a member that is read as a whole, for example XML."""
-MAX_COMPRESSION_RATIO = 100
+MAX_UNPACKED_OVER_ARCHIVE_SIZE = 100
 """Largest ratio [1] of the unpacked size of all members to the size of the archive.
 
 It applies to unpacked sizes above MIN_SUSPICIOUS_SIZE.
 """
 MIN_SUSPICIOUS_SIZE = 1 << 26
-"""Unpacked size [byte] up to which MAX_COMPRESSION_RATIO does not apply."""
+"""Unpacked size [byte] up to which MAX_UNPACKED_OVER_ARCHIVE_SIZE does not apply."""
 _COMPRESSION_METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 """Compression methods that FMI allows. Python ignores the declared size when it unpacks other methods."""
 _ARCHIVE_ERRORS = (
@@ -90,10 +90,10 @@ def check_members(path: str | Path, archive: zipfile.ZipFile) -> None:
     size, packed = sum(member.file_size for member in members), os.stat(path).st_size
     if size > MAX_UNPACKED_SIZE:
         raise ValueError(f"{path}: has {size} bytes unpacked; allowed are {MAX_UNPACKED_SIZE}")
-    if size > MIN_SUSPICIOUS_SIZE and size > MAX_COMPRESSION_RATIO * packed:
+    if size > MIN_SUSPICIOUS_SIZE and size > MAX_UNPACKED_OVER_ARCHIVE_SIZE * packed:
         raise ValueError(
             f"{path}: has {size} bytes unpacked, {size / packed:.0f} times its packed size; allowed are "
-            f"{MAX_COMPRESSION_RATIO} times, or {MIN_SUSPICIOUS_SIZE} bytes"
+            f"{MAX_UNPACKED_OVER_ARCHIVE_SIZE} times, or {MIN_SUSPICIOUS_SIZE} bytes"
         )
 
 

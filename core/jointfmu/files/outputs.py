@@ -71,9 +71,9 @@ def _is_unedited(path: Path) -> bool:
     return match is not None and match[1] == _compute_checksum(text[match.end() :])
 
 
-def _compute_checksum(text: str) -> str:
+def _compute_checksum(file_text: str) -> str:
     """Checksum of the text of a parameter file, for its first line: it reveals later edits."""
-    return f"{zlib.crc32(text.encode()):08x}"
+    return f"{zlib.crc32(file_text.encode()):08x}"
 
 
 PARAMETER_FILE = FileKind("parameter file", (".toml",), _is_unedited)
@@ -103,12 +103,12 @@ _PROGRAM_FILE_ENDINGS = {
 """Endings of the names of all kinds of files that this program writes."""
 
 
-def write_parameter_text(path: str | Path, text: str) -> None:
+def write_parameter_text(path: str | Path, file_text: str) -> None:
     """Write a parameter file; its first line has a checksum that reveals later edits.
 
     Raises ValueError as `write_text` does.
     """
-    write_text(path, f"# {PROGRAM_MARK}; checksum {_compute_checksum(text)}\n{text}")
+    write_text(path, f"# {PROGRAM_MARK}; checksum {_compute_checksum(file_text)}\n{file_text}")
 
 
 def check_output(path: str | Path, file_kind: FileKind, overwrite: bool = False) -> None:
@@ -151,7 +151,7 @@ def check_output(path: str | Path, file_kind: FileKind, overwrite: bool = False)
 
 
 def check_outputs(paths: Iterable[Path], file_kind: FileKind, overwrite: bool = False) -> None:
-    """Raise ValueError before the work starts if one of several output files may not or cannot be written.
+    """Raise ValueError, before the work starts, if an output file may not or cannot be written.
 
     All files are of one kind; the errors are those of `check_output`.
     """

@@ -22,16 +22,16 @@ def set_result_store(store: ResultStore | None) -> None:
     _stores[:] = [] if store is None else [store]
 
 
-def compute_once(name: str, arguments: "Sequence[Array]", compute: "Callable[[], Array]") -> "Array":
+def compute_once(function_name: str, arguments: "Sequence[Array]", compute: "Callable[[], Array]") -> "Array":
     """Array (...) of float64 that a function computes, or that the result store has for the same arguments.
 
-    name : text with the name of the computation and all numbers on which it depends besides the arguments
+    function_name : text with the name of the computation, and all other numbers on which it depends
     """
     import numpy as np  # here: the tools import this module before they can report an interrupt
 
     if not _stores:
         return compute()
-    digest = sha256(name.encode())
+    digest = sha256(function_name.encode())
     for argument in arguments:
         digest.update(f"\0{argument.shape} ".encode() + np.ascontiguousarray(argument, "<f8").tobytes())
 

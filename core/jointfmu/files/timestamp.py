@@ -5,7 +5,7 @@ from os import environ
 
 
 def build_time() -> datetime:
-    """Date for written files: SOURCE_DATE_EPOCH if it is set, for reproducible files, else now."""
+    """Date that is written into files: SOURCE_DATE_EPOCH if it is set, for reproducible files, else now."""
     return source_date() or datetime.now(UTC)
 
 

@@ -22,7 +22,7 @@ def write_text(path: str | Path, text: str) -> None:
     write_bytes(path, data)
 
 
-def write_bytes(path: str | Path, data: bytes) -> None:
+def write_bytes(path: str | Path, file_content: bytes) -> None:
     """Write a file atomically: to a temporary file in the same folder, which is then renamed.
 
     A symbolic link stays; the file that it leads to is replaced. A device, a pipe or standard output is
@@ -31,12 +31,12 @@ def write_bytes(path: str | Path, data: bytes) -> None:
     Raises ValueError, which names the path, if it cannot be written.
     """
     if is_stream(path):
-        _write_stream(path, data)
+        _write_stream(path, file_content)
         return
     target = Path(os.path.realpath(path))
     temporary = _create_temporary_file(path, target)
     try:
-        temporary.write_bytes(data)
+        temporary.write_bytes(file_content)
         temporary.chmod(0o644)
         temporary.replace(target)
     except OSError as error:
@@ -78,7 +78,7 @@ def _output_descriptor(file_status: os.stat_result) -> int | None:
     return None
 
 
-def _write_stream(path: str | Path, data: bytes) -> None:
+def _write_stream(path: str | Path, content: bytes) -> None:
     """Write bytes to a device, a pipe, or an output stream of this process, which is flushed first.
 
     Raises BrokenPipeError if standard output is a pipe whose reader has ended.
@@ -87,12 +87,12 @@ def _write_stream(path: str | Path, data: bytes) -> None:
     try:
         if descriptor is None:
             with open(path, "wb") as stream:
-                stream.write(data)
+                stream.write(content)
         else:
             for printed in (sys.stdout, sys.stderr):
                 printed.flush()
             with open(descriptor, "wb", closefd=False) as stream:
-                stream.write(data)
+                stream.write(content)
     except OSError as error:
         if descriptor is not None and isinstance(error, BrokenPipeError):
             raise

@@ -14,7 +14,7 @@ class RoughSurface:
     """Surface of a joint; its fractal parameters `PREFIX.D`, `PREFIX.G` can be fitted to measured heights.
 
     is_areal  : True: D_s and G_s of the surface; False: D and G of a profile
-    direction : direction of the profile on a textured surface, "x" or "y"; None: the one of less scatter
+    direction : direction of the profile on a textured surface, "x" or "y"; None: direction of less scatter
     """
 
     parameter_prefix: str
@@ -25,14 +25,14 @@ class RoughSurface:
 class FlangeRating(NamedTuple):
     """Rated values at a flange of a joint, to scale the bodies and loads of a system to the joint.
 
-    load     : rated force or torque [N or N.m]
-    motion   : motion of the flange over motion of the joint's output flange [1]
-    friction : dry friction at rest [N or N.m]
+    rated_load                : rated force or torque [N or N.m]
+    motion_over_output_motion : motion of the flange over motion of the joint's output flange [1]
+    static_friction_load      : dry friction at rest [N or N.m]
     """
 
-    load: float
-    motion: float
-    friction: float
+    rated_load: float
+    motion_over_output_motion: float
+    static_friction_load: float
 
 
 def use_parameters_as_law(parameters: object) -> object:

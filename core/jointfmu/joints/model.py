@@ -35,7 +35,7 @@ class TabulatedJoint(Protocol):
 
     @property
     def joint(self) -> object:
-        """Values of the parameters, a frozen dataclass; C code is generated from them."""
+        """Parameter set of the joint, a frozen dataclass; C code is generated from it."""
 
     @property
     def curve(self) -> TabulatedLaw:

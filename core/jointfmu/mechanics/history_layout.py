@@ -47,7 +47,7 @@ class HistoryLayout:
         return np.zeros(self.size)
 
     def split(self, history: Array) -> dict[str, Array]:
-        """Views {name: variable (..., *shape)} into arrays of history variables (..., n)."""
+        """Split arrays of history variables (..., n) into views {name: variable (..., *shape)}."""
         rows = history.shape[:-1]
         return {
             name: history[..., start:end].reshape(rows + shape)
@@ -55,7 +55,7 @@ class HistoryLayout:
         }
 
     def join(self, variables: Mapping[str, ArrayLike], *leading_shape: int) -> Array:
-        """Array (*shape, n) of history variables from {name: variable (..., *its shape)}."""
+        """Join history variables {name: variable (..., *its shape)} to an array (*shape, n)."""
         memory = np.empty((*leading_shape, self.size))
         for name, view in self.split(memory).items():
             view[...] = variables[name]

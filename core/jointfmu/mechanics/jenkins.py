@@ -215,7 +215,10 @@ class SliderUpdate:
 
     @property
     def traction(self) -> Array:
-        """Sum of the friction forces of all sliders, (...) or (..., 2)."""
+        """Friction traction: sum of the friction forces of all sliders, in the unit of `force`.
+
+        Shape (...) along one direction, (..., 2) in a plane.
+        """
         return np.asarray(np.sum(self.force, axis=-1))
 
 
@@ -268,6 +271,6 @@ class Sliders:
 
 
 def compliance(stiffness: Number) -> Number:
-    """Compliance 1/stiffness; 0 where the stiffness is zero."""
+    """Compliance 1/stiffness of springs, in the inverse unit of the stiffness; 0 where there is no spring."""
     has_spring = stiffness > 0.0
     return select(has_spring, 1.0 / select(has_spring, stiffness, 1.0), 0.0)

@@ -463,7 +463,7 @@ class _DisplacementIncrement:
         return _vector_components(self.tangential_displacement)
 
     def scale_increment(self, step_fraction: float) -> "_DisplacementIncrement":
-        """Part of the increment from its start up to a step fraction [1], from 0 to 1."""
+        """Scale the increment: its part from the start up to a step fraction [1], from 0 to 1."""
         return _DisplacementIncrement(
             self.start_approach,
             self.start_approach + step_fraction * self.approach_change,
@@ -543,7 +543,9 @@ def small_cycle_energies(
 def is_small_amplitude(
     friction_coefficient: Number, stiffness_ratio: Number, amplitude: Number, load: Number, stiffness: Number
 ) -> Number:
-    """Whether a friction cycle needs `small_cycle_energies`: differences of energies would cancel.
+    """Whether the amplitude of a friction cycle is so small that differences of energies would cancel.
+
+    The energies are then computed by `small_cycle_energies`.
 
     Arguments: amplitude [m] of the displacement, load [Pa] and stiffness [Pa/m] of the contact.
     """

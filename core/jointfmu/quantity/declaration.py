@@ -43,9 +43,9 @@ def series_field(unit: str, doc: str, *, optional: bool = False, **bounds: float
     return field(default=default, metadata={**meta, "calibration": False, "whole": False, "series": True})
 
 
-def describe_range(values: Sequence[float]) -> str:
-    """Text with the count, the smallest and the largest of some numbers: "3 numbers from 1 to 5"."""
-    return f"{len(values)} numbers from {min(values):.6g} to {max(values):.6g}" if len(values) else "none"
+def describe_range(numbers: Sequence[float]) -> str:
+    """Describe numbers by their count, the smallest and the largest: "3 numbers from 1 to 5"."""
+    return f"{len(numbers)} numbers from {min(numbers):.6g} to {max(numbers):.6g}" if len(numbers) else "none"
 
 
 def choice_field(*allowed_values: str | bool, doc: str) -> Any:
@@ -72,7 +72,7 @@ def name_in_file(declared_field: Field[Any]) -> str:
     return declared_field.name.rstrip("_")
 
 
-def find_problem(name: str, value: object, declared_field: Field[object]) -> str | None:
+def find_problem(parameter_name: str, value: object, declared_field: Field[object]) -> str | None:
     """Error message for the value of a declared field, one line; None if the value is valid.
 
     The message has name, value, unit and allowed values.
@@ -86,26 +86,30 @@ def find_problem(name: str, value: object, declared_field: Field[object]) -> str
     if "allowed" in meta:
         if any(value is option or (type(value) is str and value == option) for option in meta["allowed"]):
             return None
-        return f"{name} = {value!r} is not one of {', '.join(str(a).lower() for a in meta['allowed'])}"
+        return (
+            f"{parameter_name} = {value!r} is not one of {', '.join(str(a).lower() for a in meta['allowed'])}"
+        )
     if "series" in meta:
-        return _find_series_problem(name, value, declared_field)
+        return _find_series_problem(parameter_name, value, declared_field)
     unit = "" if meta["unit"] == "1" else f" {meta['unit']}"
     number = isinstance(value, int | float | np.ndarray | np.number) and not isinstance(value, bool)
     array = np.asarray(value)
     if not number or array.dtype.kind not in "fiu":
         expected = "real number" if number else "number"
-        return f"{name} = {_shorten_repr(value)} is not a {expected}{unit and f' in{unit}'}: {meta['doc']}"
+        text = f"{parameter_name} = {_shorten_repr(value)} is not a {expected}"
+        return f"{text}{unit and f' in{unit}'}: {meta['doc']}"
     inside = meta["interval"].contains(array)
     if not np.all(inside):
         first = array[~inside].flat[0]
-        return f"{name} = {first:.10g}{unit} is outside {meta['interval']}: {meta['doc']}"
+        return f"{parameter_name} = {first:.10g}{unit} is outside {meta['interval']}: {meta['doc']}"
     if meta["whole"] and np.any(is_fractional := array % 1.0 != 0.0):
-        return f"{name} = {array[is_fractional].flat[0]:g} is not a whole number, allowed are 1, 2, 3, ..."
+        fractional = array[is_fractional].flat[0]
+        return f"{parameter_name} = {fractional:g} is not a whole number, allowed are 1, 2, 3, ..."
     return None
 
 
 def find_problems(
-    values: Mapping[str, object],
+    value_by_name: Mapping[str, object],
     declared_fields: Mapping[str, Field[Any]],
     missing_names: Collection[str] = (),
 ) -> list[str]:
@@ -113,31 +117,32 @@ def find_problems(
 
     Problems are unknown and missing names, and values outside their intervals.
     """
-    texts = [f"unknown name {name!r}" for name in values if name not in declared_fields]
+    texts = [f"unknown name {name!r}" for name in value_by_name if name not in declared_fields]
     if texts:
         texts.append(f"allowed are {', '.join(declared_fields)}")
     if missing_names:
         texts.append(f"missing {', '.join(missing_names)}")
     messages = (
         find_problem(name, value, declared_fields[name])
-        for name, value in values.items()
+        for name, value in value_by_name.items()
         if name in declared_fields
     )
     return texts + [text for text in messages if text]
 
 
-def _find_series_problem(name: str, values: object, declared_field: Field[object]) -> str | None:
+def _find_series_problem(parameter_name: str, series: object, declared_field: Field[object]) -> str | None:
     """Error message for the first invalid number of a series, see `find_problem`; None if all are valid."""
-    if values == () and declared_field.default == ():
+    if series == () and declared_field.default == ():
         return None
-    if not isinstance(values, list | tuple) or not values:
-        return f"{name} = {_shorten_repr(values)} is not a list of numbers: {declared_field.metadata['doc']}"
-    if all(type(value) is float for value in values) and np.all(
-        declared_field.metadata["interval"].contains(np.array(values))
+    if not isinstance(series, list | tuple) or not series:
+        doc = declared_field.metadata["doc"]
+        return f"{parameter_name} = {_shorten_repr(series)} is not a list of numbers: {doc}"
+    if all(type(value) is float for value in series) and np.all(
+        declared_field.metadata["interval"].contains(np.array(series))
     ):
         return None
     number = field(metadata={key: value for key, value in declared_field.metadata.items() if key != "series"})
-    texts = (find_problem(f"{name}[{i}]", value, number) for i, value in enumerate(values))
+    texts = (find_problem(f"{parameter_name}[{i}]", value, number) for i, value in enumerate(series))
     return next((text for text in texts if text), None)
 
 

@@ -117,7 +117,7 @@ def erf(x: Number) -> Number:
 
 
 def select(condition: Any, value: Number, other_value: Number) -> Number:
-    """`value` where a condition holds, else `other_value`, elementwise; a scalar condition keeps the type."""
+    """Select `value` where a condition holds, else `other_value`; a scalar condition keeps the type."""
     if isinstance(condition, bool | np.bool_):
         return value if condition else other_value
     return np.where(condition, value, other_value)

@@ -39,7 +39,7 @@ class ParameterLimit:
 
 
 def check_limits(parameters: object, limits: Iterable[ParameterLimit]) -> None:
-    """Raise ValueError for the first parameter of a set that lies outside one of the limits."""
+    """Raise ValueError if a parameter of a set lies outside its limit; the message names the first one."""
     units = {
         name: item.metadata["unit"]
         for name, item in flatten_fields(type(parameters))
@@ -109,17 +109,17 @@ def _selected_fields(cls: Any, parameter_names: tuple[str, ...]) -> dict[str, Fi
     return dict(flatten_fields(cls, parameter_names=parameter_names))
 
 
-def build_parameter_set(cls: type[ParameterSet], values: Mapping[str, object]) -> ParameterSet:
+def build_parameter_set(cls: type[ParameterSet], value_by_name: Mapping[str, object]) -> ParameterSet:
     """Build and check the parameter set `cls` from {structured name: value}.
 
     Raises ValueError, one line, that names every unknown or missing name and every value that is not a number
     or lies outside its interval; also if names belong to two alternatives of a group.
     """
-    declared = _selected_fields(cls, tuple(values))  # type: ignore[arg-type]
+    declared = _selected_fields(cls, tuple(value_by_name))  # type: ignore[arg-type]
     required = {name for name, item in declared.items() if item.default is MISSING}
-    if texts := find_problems(values, declared, sorted(required - values.keys())):
+    if texts := find_problems(value_by_name, declared, sorted(required - value_by_name.keys())):
         raise ValueError("; ".join(texts))
-    plain = {name: _to_float(value) for name, value in values.items()}
+    plain = {name: _to_float(value) for name, value in value_by_name.items()}
     return assemble_parameter_set(cls, plain, lambda part, arguments: part(**arguments))
 
 
@@ -142,7 +142,7 @@ def replace_values(parameters: ParameterSet, new_values: Mapping[str, object]) -
 
 def assemble_parameter_set(
     cls: type[ParameterSet],
-    values: Mapping[str, object],
+    value_by_name: Mapping[str, object],
     make_instance: Callable[[type[Any], dict[str, Any]], Any],
     prefix: str = "",
 ) -> ParameterSet:
@@ -156,18 +156,18 @@ def assemble_parameter_set(
         name = prefix + name_in_file(item)
         if "group" in item.metadata:
             sections = _group_sections(item, hints[item.name])
-            section = _select_section(sections, prefix, values)
+            section = _select_section(sections, prefix, value_by_name)
             arguments[item.name] = assemble_parameter_set(
-                sections[section], values, make_instance, f"{prefix}{section}."
+                sections[section], value_by_name, make_instance, f"{prefix}{section}."
             )
-        elif name in values:
-            arguments[item.name] = values[name]
+        elif name in value_by_name:
+            arguments[item.name] = value_by_name[name]
     instance: ParameterSet = make_instance(cls, arguments)
     return instance
 
 
 def _group_sections(group_field: Field[object], default_type: object) -> dict[str, type[object]]:
-    """File sections that a group of parameters may have: {section name: class}.
+    """List the file sections that a group of parameters may have: {section name: class}.
 
     default_type : declared type of the field of the group
     """
@@ -175,7 +175,7 @@ def _group_sections(group_field: Field[object], default_type: object) -> dict[st
 
 
 def _select_section(sections: Iterable[str], prefix: str, parameter_names: Collection[str]) -> str:
-    """Alternative of a group that the parameter names belong to; the first one if no name belongs to any.
+    """Select the alternative of a group that the parameter names belong to; the first one if none matches.
 
     Raises ValueError, which lists the names, if they belong to two alternatives.
     """

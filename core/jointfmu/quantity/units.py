@@ -163,7 +163,7 @@ def _parse_symbol(symbol: str, unit: str) -> tuple[Fraction, dict[str, int]]:
 
 
 def _make_unit(unit_name: str, quantity: str, *display_units: str) -> Unit:
-    """Unit of the table UNITS, with factors to its display units."""
+    """Make a unit of the table UNITS, with factors to its display units."""
     return Unit(
         quantity,
         base_exponents(unit_name),

@@ -65,7 +65,7 @@ def encode_panels(panels: Sequence[Panel]) -> str:
 
 
 def make_figure(panels: Sequence[Panel]) -> str:
-    """HTML element of a chart with several panels, for a page that contains `read_script("figures")`."""
+    """Make the HTML element of a chart with panels, for a page that contains `read_script("figures")`."""
     return f'<div class="figure"><script type="application/json">{encode_panels(panels)}</script></div>'
 
 
@@ -75,10 +75,10 @@ def read_script(*script_names: str) -> str:
 
 
 def read_style() -> str:
-    """CSS of colours, charts and tables, the same on all pages."""
+    """Read the CSS of colours, charts and tables, the same on all pages."""
     return _read_file("chart.css")
 
 
 def _read_file(file_name: str) -> str:
-    """Text of a file in the folder of this module."""
+    """Read the text of a file in the folder of this module."""
     return Path(__file__).with_name(file_name).read_text(encoding="utf-8")

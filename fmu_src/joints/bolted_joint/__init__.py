@@ -38,7 +38,7 @@ _ONE_POINT_FIELD = {"share": (1.0,), "x": (0.0,), "y": (0.0,), "equal": (1.0,), 
 
 
 def _convert_parameters(joint: AnyBoltedJoint) -> Mapping[str, object]:
-    """Parameter values with which the C code is generated: one contact point, mean positions of the bolts."""
+    """Convert the parameters for the C code generation: one contact point, mean positions of the bolts."""
     own = {
         name: value
         for name, value in replace_points(joint).items()
@@ -62,7 +62,7 @@ def _make_single_mode_bodies(bolt_count: int) -> dict[str, object]:
 
 
 def _make_data_tables(joint: AnyBoltedJoint) -> Mapping[str, DataTable]:
-    """{name: table} of numbers of a bolted joint that its C code reads as data.
+    """Make {name: table} of numbers of a bolted joint that its C code reads as data.
 
     The tables have the contact points, friction patches, sliders, bolts and modes of the members.
     """
@@ -77,7 +77,7 @@ def _make_data_tables(joint: AnyBoltedJoint) -> Mapping[str, DataTable]:
 
 
 def _make_body_tables(joint: AnyBoltedJoint) -> Mapping[str, DataTable]:
-    """{name: table} of the elastic members: modal stiffness, bolts, displacements, pressure transfer.
+    """Make {name: table} of the elastic members: modal stiffness, bolts, displacements, pressure transfer.
 
     A row has the displacements of one point, patch or bolt by all modes, as 2-byte integers. A joint with
     rigid sides reserves one row for each table, and MAX_RIGID_SIDE_BOLTS rows for the bolts.
@@ -121,21 +121,21 @@ def _pressure_transfer_table(force_shares: Any) -> Any:
 
 
 def _encode_modal_rows(modal_rows: Any) -> Any:
-    """Modal displacements of the members in units of the last decimal, with zeros up to MAX_MODES modes."""
+    """Encode modal displacements of the members in units of the last decimal; zeros up to MAX_MODES modes."""
     return np.pad(
         np.round(modal_rows * 10.0**MODAL_DISPLACEMENT_DECIMALS),
         ((0, 0), (0, MAX_MODES - modal_rows.shape[1])),
     )
 
 
-def _distribution_rows(distribution: PressureDistribution) -> Any:
+def _distribution_rows(pressure_distribution: PressureDistribution) -> Any:
     """Rows (n, 5) of the contact points: area share, x, y, and both pressure ratios."""
     return np.column_stack(
         [
-            distribution.area_share,
-            distribution.position,
-            distribution.preload_pressure_ratio,
-            distribution.moment_pressure_ratio,
+            pressure_distribution.area_share,
+            pressure_distribution.position,
+            pressure_distribution.preload_pressure_ratio,
+            pressure_distribution.moment_pressure_ratio,
         ]
     )
 
@@ -149,7 +149,7 @@ _CURVE_POINT_COUNT = 13
 
 
 def _draw_friction_loops(spring: Any, ramp_end_preload: float) -> list[chart.Panel]:
-    """Charts of friction loops with several amplitudes, and of their loss factor over the amplitude.
+    """Draw friction loops with several amplitudes, and their loss factor over the amplitude.
 
     ramp_end_preload : preload at the end of the load ramp [N]
     """

@@ -69,7 +69,7 @@ def _add_preload_functions(function_graph: FunctionGraph) -> None:
 
 
 def _add_shear_functions(function_graph: FunctionGraph) -> None:
-    """Add the functions of shear without history, and of the friction sliders of a patch."""
+    """Add the C functions of elastic shear, and of friction sliders of a patch, to the function graph."""
     x = make_symbols("x", 7)
     doc = (
         "friction limit, pressure and its derivatives, displacement -> traction, tangent xx, xy, yy, "
@@ -132,7 +132,7 @@ def _add_cycle_functions(function_graph: FunctionGraph) -> None:
 
 
 def _make_definitions(function_graph: FunctionGraph, model: Model) -> CDefinitions:
-    """Constants that the C code of the bolted joint has in common with Python."""
+    """Make the constants that the C code of the bolted joint has in common with Python."""
     counts = {f"SUM_{name.upper()}": k for k, name in enumerate(outputs.CONTACT_SUM_NAMES)} | {
         "N_SUMS": len(outputs.CONTACT_SUM_NAMES)
     }

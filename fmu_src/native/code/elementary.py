@@ -25,7 +25,7 @@ _EXPM1_TERM_COUNT, _SINE_TERM_COUNT = 13, 8
 
 @cache
 def make_tables_header() -> str:
-    """Text of elementary_tables.h; its numbers are exact to the last bit of a double."""
+    """Make the text of elementary_tables.h; its numbers are exact to the last bit of a double."""
     with localcontext() as context:
         context.prec = _DECIMAL_DIGITS
         log_2, quarter = Decimal(2).ln(), _PI / 2
@@ -102,26 +102,26 @@ def _split_into_short_doubles(value: Decimal) -> Iterator[float]:
 
 
 def _make_log_rows() -> Iterator[list[float]]:
-    """Rows of the table of the logarithm: 1/c, high and low part of log(c) for each interval.
+    """Make the rows of the table of the logarithm: 1/c, high and low part of log(c) for each interval.
 
     c is near the middle of the interval, and 1/c has few bits. In the interval of 1, c is exactly 1.
     """
     for interval in range(TABLE_INTERVALS):
         begin, end = (LOG_TABLE_START_BITS + (k << LOG_MANTISSA_BITS) for k in (interval, interval + 1))
-        middle = 0.5 * (_double_from_bits(begin) + _double_from_bits(end))
+        middle = 0.5 * (_convert_bits_to_double(begin) + _convert_bits_to_double(end))
         inverse = 1.0 if begin <= _BIT_PATTERN_OF_ONE < end else round(2.0**16 / middle) * 2.0**-16
         log = -Decimal(inverse).ln()
         high = _round_to_bits(log, 42)
         yield [inverse, high, float(log - Decimal(high))]
 
 
-def _double_from_bits(bit_pattern: int) -> float:
+def _convert_bits_to_double(bit_pattern: int) -> float:
     """Positive double with a given bit pattern."""
     return float.fromhex(f"0x1.{bit_pattern & ((1 << 52) - 1):013x}p{(bit_pattern >> 52) - 1023}")
 
 
 def _make_erf_rows() -> Iterator[list[float]]:
-    """Taylor coefficients of erf about each node of its table: Hermite polynomials times a Gaussian."""
+    """Make Taylor coefficients of erf about each node of its table: Hermite polynomials times a Gaussian."""
     for node in range(_ERF_NODES_PER_UNIT * _ERF_MAX_ARGUMENT + 1):
         x = Decimal(node) / _ERF_NODES_PER_UNIT
         gaussian = 2 / _PI.sqrt() * (-x * x).exp()

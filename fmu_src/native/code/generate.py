@@ -35,7 +35,7 @@ def list_runtime_files(law_file_stems: Sequence[str] = ()) -> list[Path]:
 
 
 def generate_sources(fmu_name: str, parameters: ParameterFile) -> dict[str, str]:
-    """{file name: text} of all C sources of an FMU with its data, for both FMI versions.
+    """Generate all C sources of an FMU with its data, for both FMI versions: {file name: text}.
 
     Raises ValueError if the parameters are of another joint.
     """
@@ -46,7 +46,7 @@ def generate_sources(fmu_name: str, parameters: ParameterFile) -> dict[str, str]
 
 
 def generate_code(model: Model, parameters: ParameterFile, parameter_split: ParameterSplit) -> dict[str, str]:
-    """{file name: text} of all C sources of an FMU except data.c.
+    """Generate all C sources of an FMU except data.c: {file name: text}.
 
     The sources are the same for all parameter files of one structure: files with the same generated code.
     """
@@ -66,7 +66,7 @@ def generate_code(model: Model, parameters: ParameterFile, parameter_split: Para
 def _generate_law_sources(
     model: Model, parameter_split: ParameterSplit, native_definition: NativeDefinition
 ) -> tuple[str, str]:
-    """Texts of law.h and law.c, generated once for all parameter files with the same structure."""
+    """Generate the texts of law.h and law.c, once for all parameter files with the same structure."""
     key = (
         model.name,
         model.evaluate,
@@ -86,13 +86,13 @@ def _generate_law_sources(
 
 
 def read_instantiation_token(source_texts: Mapping[str, str]) -> str:
-    """GUID or instantiation token in the file data.c of C sources."""
+    """Read the GUID or instantiation token in the file data.c of C sources."""
     line = next(line for line in source_texts["data.c"].splitlines() if ".token = " in line)
     return line.split('"')[1]
 
 
 def load_native_definition(model: Model) -> NativeDefinition:
-    """Definition of the C code of a model.
+    """Import the definition of the C code of a model.
 
     Raises ValueError if the builder data of its joint have none, or if only one of the Python model and the
     C definition has history variables.
@@ -191,7 +191,7 @@ def format_variables_c(model: Model) -> str:
 
 
 def _format_variable(
-    name: str,
+    variable_name: str,
     unit: str,
     doc: str,
     interval: Interval,
@@ -205,5 +205,5 @@ def _format_variable(
     )
     numbers = ", ".join(format_number(x) for x in (interval.low, interval.high, margin))
     allowed = "" if is_boolean else str(interval)
-    texts = ", ".join(format_string(x) for x in (name, "" if unit == "1" else unit, doc, allowed))
+    texts = ", ".join(format_string(x) for x in (variable_name, "" if unit == "1" else unit, doc, allowed))
     return f"{{{texts}, {numbers}, {flags}}}"

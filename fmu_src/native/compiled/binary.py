@@ -20,21 +20,21 @@ _DIGEST_SIZE = 32
 """Size of a SHA-256 digest [bytes]."""
 
 
-def fill_library(library: bytes, placeholder_data: DataBlock, data: DataBlock, fmu_name: str) -> bytes:
+def fill_library(library: bytes, placeholder_data: DataBlock, fmu_data: DataBlock, fmu_name: str) -> bytes:
     """Insert data and name of an FMU into a compiled library.
 
     library          : compiled with the placeholder data and the placeholder name
     placeholder_data : data block in the compiled library
-    data             : data block of the FMU
+    fmu_data         : data block of the FMU
 
     Raises ValueError if the library does not contain the placeholder data exactly once.
     """
-    if library.count(placeholder_data.content) != 1 or len(placeholder_data.content) != len(data.content):
+    if library.count(placeholder_data.content) != 1 or len(placeholder_data.content) != len(fmu_data.content):
         raise ValueError(f"{fmu_name}: the compiled part is not that of these data; remove it")
-    image = bytearray(library.replace(placeholder_data.content, data.content))
+    image = bytearray(library.replace(placeholder_data.content, fmu_data.content))
     _replace_placeholder_name(image, fmu_name.encode())
     if image.startswith(_MACHO_MAGIC):
-        _set_uuid(image, UUID(data.token))
+        _set_uuid(image, UUID(fmu_data.token))
         _update_signature(image)
     return bytes(image)
 

@@ -78,9 +78,9 @@ def check_cache_access(path: Path) -> None:
             raise ValueError(f"{ancestor}: every user may write to it; {advice}")
 
 
-def make_cache_folder(folder: Path) -> None:
+def make_cache_folder(cache_folder: Path) -> None:
     """Make a folder of the cache and its missing parents, accessible for this user only. Raises OSError."""
-    for missing in reversed([path for path in (folder, *folder.parents) if not path.exists()]):
+    for missing in reversed([path for path in (cache_folder, *cache_folder.parents) if not path.exists()]):
         missing.mkdir(mode=0o700, exist_ok=True)
 
 

@@ -80,19 +80,19 @@ def get_compiled_model(
     return compiled_model
 
 
-def get_cached_result(dependency_text: str, model: Model, compute_result: Callable[[], bytes]) -> bytes:
-    """Bytes that `compute_result` computes from a model, read from the cache if the sources are unchanged.
+def get_cached_result(dependency_text: str, model: Model, compute_bytes: Callable[[], bytes]) -> bytes:
+    """Bytes that `compute_bytes` computes from a model, read from the cache if the sources are unchanged.
 
     dependency_text : text of everything else on which the result depends
 
-    Raises ValueError if other users may write to the cache, and what `compute_result` raises.
+    Raises ValueError if other users may write to the cache, and what `compute_bytes` raises.
     """
     name = sha256(f"{dependency_text} {_digest_sources(model)}".encode()).hexdigest()[:32]
     file = _candidate_paths(f"{model.name}-{name}{_RESULT_FILE_SUFFIX}")[-1]
     if content := _read_cache_file(file):
         with suppress(lzma.LZMAError):
             return lzma.decompress(content)
-    result = compute_result()
+    result = compute_bytes()
     with suppress(OSError):
         _write_cache_file(file, lzma.compress(result))
     return result
@@ -193,11 +193,11 @@ def _digest_folders(source_folders: tuple[Path, ...]) -> str:
     return digest.hexdigest()
 
 
-def _read_source_files(folder: Path) -> Iterator[tuple[str, bytes]]:
+def _read_source_files(source_folder: Path) -> Iterator[tuple[str, bytes]]:
     """Yield path and content of all source files below a folder, sorted by path."""
     paths = {
-        path.relative_to(folder).as_posix(): path
-        for path in folder.rglob("*")
+        path.relative_to(source_folder).as_posix(): path
+        for path in source_folder.rglob("*")
         if path.suffix in _SOURCE_SUFFIXES
     }
     for name in sorted(paths):
@@ -218,14 +218,14 @@ def pack_model(model: CompiledModel) -> bytes:
     return buffer.getvalue()
 
 
-def unpack_model(content: bytes) -> CompiledModel:
+def unpack_model(archive_content: bytes) -> CompiledModel:
     """Decode a compiled model from an archive.
 
     Raises ValueError, LZMAError or TarError if the archive is invalid or has a member of another name.
     """
     sources: dict[str, str] = {}
     libraries_by_version: dict[str, dict[str, bytes]] = {}
-    with tarfile.open(fileobj=io.BytesIO(lzma.decompress(content))) as archive:
+    with tarfile.open(fileobj=io.BytesIO(lzma.decompress(archive_content))) as archive:
         for info in archive:
             folder, _, name = info.name.partition("/")
             if not _MEMBER_NAME_PATTERN.fullmatch(info.name):
@@ -241,14 +241,14 @@ def unpack_model(content: bytes) -> CompiledModel:
     return CompiledModel(sources, libraries_by_version)
 
 
-def _write_cache_file(cache_path: Path, content: bytes) -> None:
+def _write_cache_file(cache_path: Path, file_content: bytes) -> None:
     """Write a cache file atomically, and delete the oldest files of its folder beyond MAX_CACHED_FILES.
 
     While other processes write into the folder, its listing can contain a file twice.
     """
     make_cache_folder(cache_path.parent)
     with tempfile.NamedTemporaryFile("wb", dir=cache_path.parent, delete=False) as new:
-        new.write(content)
+        new.write(file_content)
     Path(new.name).replace(cache_path)
     times = {
         other: _modification_time(other) for other in cache_path.parent.glob("*.xz") if other != cache_path

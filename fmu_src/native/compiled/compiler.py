@@ -99,7 +99,7 @@ def compile_libraries(
 
 
 def select_source_files(source_names: Iterable[str], fmi_version: str) -> list[str]:
-    """C files to compile for one FMI version."""
+    """Select the C files to compile for one FMI version."""
     excluded = {"2": "fmi3.c", "3": "fmi2.c"}[fmi_version]
     return [name for name in source_names if name.endswith(".c") and name != excluded]
 
@@ -171,7 +171,7 @@ def _compiler_options(platform: str, library_name: str) -> tuple[str, ...]:
 
 
 def _read_fmi_headers() -> dict[str, str]:
-    """{file name: text} of the FMI headers, from fmpy."""
+    """Read {file name: text} of the FMI headers, from fmpy."""
     import fmpy
 
     folder = Path(fmpy.__file__).parent / "c-code"
@@ -189,7 +189,7 @@ def _write_source_files(files: Mapping[str, str], source_names: Sequence[str]) -
 
 
 def _select_included_files(files: Mapping[str, str], source_name: str) -> dict[str, str]:
-    """{name: text} of a C file and of all files that it includes, directly or through others."""
+    """Select a C file and all files that it includes, directly or through others: {name: text}."""
     selected: dict[str, str] = {}
     pending = [source_name]
     while pending:

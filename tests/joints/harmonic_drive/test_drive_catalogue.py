@@ -38,7 +38,7 @@ def test_every_row_of_stiffness_has_its_drives():
             assert found.numbers["K1"].value == float(row["K1_Nm_per_rad"])
             if row["K3"]:
                 assert found.numbers["K3"].value == float(row["K3"])
-            assert found.numbers["K3"].kind == ("catalogue" if row["K3"] else "estimate")
+            assert found.numbers["K3"].origin == ("catalogue" if row["K3"] else "estimate")
             assert found.numbers["T2"].value == float(row["T2_Nm"])
 
 
@@ -111,10 +111,10 @@ def test_a_torque_that_is_not_printed_is_a_marked_estimate():
     """By the catalogue, CSG torques are 30 % above CSF ones, and SHG torques equal CSG ones."""
     strong = catalogue.find_drive("CSG-20-100").numbers["rated_torque"]
     weak = catalogue.find_drive("CSF-20-100").numbers["rated_torque"]
-    assert (weak.kind, strong.kind) == ("estimate", "catalogue")
+    assert (weak.origin, strong.origin) == ("estimate", "catalogue")
     assert weak.value == pytest.approx(strong.value / 1.3)
     like = catalogue.find_drive("SHG-14-50").numbers["rated_torque"]
-    assert (like.value, like.kind, like.source) == (7.0, "estimate", "that of CSG-14-50")
+    assert (like.value, like.origin, like.source) == (7.0, "estimate", "that of CSG-14-50")
     assert "rated_torque" not in catalogue.find_drive("RSF-3C-100").numbers
 
 
@@ -180,7 +180,7 @@ def test_single_drives_have_what_is_printed_of_them():
         for name, (head, unit) in units.items():
             if row[head]:
                 assert numbers[name].value == pytest.approx(unit * float(row[head]), rel=1e-12)
-                assert numbers[name].kind == "catalogue"
+                assert numbers[name].origin == "catalogue"
     assert catalogue.find_drive("RT1-H-14-100").numbers["K2"][:2] == (6100.0, "estimate")
 
 
@@ -212,7 +212,7 @@ def lines_of(name):
 )
 def test_the_printed_lines(name, printed):
     assert lines_of(name) == printed
-    assert {catalogue.find_drive(name).numbers[column].kind for column in LINES} == {"catalogue"}
+    assert {catalogue.find_drive(name).numbers[column].origin for column in LINES} == {"catalogue"}
 
 
 @pytest.mark.parametrize(
@@ -226,13 +226,13 @@ def test_the_printed_lines(name, printed):
 )
 def test_a_last_line_that_is_not_legible_is_that_of_the_same_lines_below(name, like, K3):
     number = catalogue.find_drive(name).numbers["K3"]
-    assert (number.value, number.kind) == (K3, "estimate")
+    assert (number.value, number.origin) == (K3, "estimate")
     assert like in number.source
 
 
 def test_a_last_line_without_such_a_drive_is_the_second():
     number = catalogue.find_drive("RSF-5B-50").numbers["K3"]
-    assert (number.value, number.kind) == (140.0, "estimate")
+    assert (number.value, number.origin) == (140.0, "estimate")
 
 
 def test_the_limits_of_an_actuator_are_its_own():
@@ -243,9 +243,9 @@ def test_the_limits_of_an_actuator_are_its_own():
         numbers = catalogue.find_drive(f"CHA-{row['size']}A-{ratio}").numbers
         loss = numbers["hysteresis_loss"]
         assert loss.value == pytest.approx(float(row["hysteresis_below_arcmin"]) * math.pi / 10800.0)
-        assert (loss.kind, loss.is_upper_limit) == ("catalogue", True)
+        assert (loss.origin, loss.is_upper_limit) == ("catalogue", True)
         assert "rated_torque" not in numbers
-    assert catalogue.find_drive("HFUC-14-30").numbers["hysteresis_loss"].kind == "estimate"
+    assert catalogue.find_drive("HFUC-14-30").numbers["hysteresis_loss"].origin == "estimate"
     assert jointfmu.drive("CHA-14A-30").values["hysteresis_loss"] == 0.0  # a limit is no value
 
 

@@ -306,7 +306,7 @@ def test_every_drive_has_friction_and_says_from_where():
             assert drive.values_by_name[name] > 0.0 or item.name == "CSF-17-100"
             number = item.numbers["starting_torque"]
             assert "Harmonic Drive" in drive.sources[name] or "Schaeffler" in drive.sources[name]
-        if number.kind == "estimate":
+        if number.origin == "estimate":
             assert drive.origins["friction_coulomb"] == "estimate"
             assert "95 % interval" in drive.sources["friction_coulomb"]
             assert number.interval[0] < number.value < number.interval[1]

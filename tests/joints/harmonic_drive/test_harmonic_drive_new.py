@@ -154,7 +154,7 @@ OTHER = list(csv.DictReader(TEXT.read_text(encoding="utf-8").splitlines()))
 
 
 def is_printed(item, column):
-    return item.numbers[column].kind == "catalogue"
+    return item.numbers[column].origin == "catalogue"
 
 
 def made(name, **options):

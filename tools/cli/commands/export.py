@@ -138,9 +138,11 @@ def _run_export(args: argparse.Namespace) -> CommandResult:
     )
 
 
-def _printed_unit(name: str) -> str:
+def _printed_unit(quantity_name: str) -> str:
     """SI unit of a printed quantity; empty for a number without unit."""
-    return next((unit for start, unit in _PRINTED_QUANTITY_UNITS.items() if name.startswith(start)), "")
+    return next(
+        (unit for start, unit in _PRINTED_QUANTITY_UNITS.items() if quantity_name.startswith(start)), ""
+    )
 
 
 def _exports_complete_joint(args: argparse.Namespace, parameter_file: ParameterFile) -> bool:
@@ -204,7 +206,7 @@ def _judge_export(args: argparse.Namespace, parameter_file: ParameterFile) -> Pl
 
 
 def _create_export(args: argparse.Namespace, parameter_file: ParameterFile) -> "ExportedFile":
-    """Content of the exported file, from the options."""
+    """Create the content of the exported file from the options."""
     import numpy as np
 
     from ...exchange.export import writing
@@ -247,7 +249,7 @@ def _create_export(args: argparse.Namespace, parameter_file: ParameterFile) -> "
 
 
 def _read_working_point(args: argparse.Namespace, joint_name: str) -> Any:
-    """Working point of the joint from the options; None if no option states one."""
+    """Read the working point of the joint from the options; None if no option states one."""
     available = exports.load_exports(joint_name)
     values = {name: getattr(args, name) for name in available.working_point}
     if available.working_point_class is None or all(value is None for value in values.values()):

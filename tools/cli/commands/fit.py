@@ -29,11 +29,13 @@ def add_command(command_parsers: SubParsers) -> None:
     top = command_parsers.add_parser("fit", help=text, description=format_sentence(text))
     ways = top.add_subparsers(dest="procedure", required=True, metavar="PROCEDURE", parser_class=Parser)
     for choices in fit_procedures().values():
-        _declare_procedure(ways, choices)
+        _declare_procedure_command(ways, choices)
     add_procedure(ways)
 
 
-def _declare_procedure(procedure_parsers: SubParsers, procedure_by_joint: Mapping[str, Procedure]) -> None:
+def _declare_procedure_command(
+    procedure_parsers: SubParsers, procedure_by_joint: Mapping[str, Procedure]
+) -> None:
     """Declare one fit procedure as a sub-command, with the options of all its joints.
 
     procedure_by_joint : {joint: its procedure of this name}
@@ -75,7 +77,7 @@ def _read_options(procedure: Procedure, args: argparse.Namespace) -> dict[str, o
 
 
 def _read_option(option: Option, args: argparse.Namespace) -> object:
-    """Value of one option of a procedure, a number in SI units."""
+    """Read the value of one option of a procedure, a number in SI units."""
     value = getattr(args, option.name)
     if not option.default_unit or value is None:
         return value

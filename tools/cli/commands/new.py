@@ -117,12 +117,12 @@ _FINISH_COLUMNS = {
 
 
 def _iterate_table_rows(
-    table_name: str, column_scales: Mapping[str, tuple[str, float]], source: str
+    table_name: str, column_scales: Mapping[str, tuple[str, float]], source_format: str
 ) -> Iterator[dict[str, object]]:
     """Yield the rows of the printed table of materials or of finishes.
 
     column_scales : {heading: (column of the table, factor from SI to the printed unit)}
-    source        : format string for the column `source`, filled with the numbers of the row
+    source_format : format string for the column `source_format`, filled with the numbers of the row
     """
     from ...inputs.drawing.tables import read_table
 
@@ -131,7 +131,7 @@ def _iterate_table_rows(
             head: round(row.numbers[column].value * scale, 9)
             for head, (column, scale) in column_scales.items()
         }
-        also = {"also": ", ".join(row.aliases), "source": source.format(**row.numbers)}
+        also = {"also": ", ".join(row.aliases), "source": source_format.format(**row.numbers)}
         yield {"name": row.name, **numbers, **also}
 
 
@@ -185,7 +185,7 @@ def _run_catalogue(args: argparse.Namespace) -> CommandResult:
     for item in found:
         numbers = "  ".join(_format_number(item, column) for column in CATALOGUE_COLUMNS)
         lines.append(f"{item.name:13}  {numbers}".rstrip())
-    if any(number.kind == "estimate" for item in found for number in item.numbers.values()):
+    if any(number.origin == "estimate" for item in found for number in item.numbers.values()):
         lines.append("~ is an estimate, < an upper limit; --json has the source of each number")
     return CommandResult(
         json_document=[_entry_to_json(CATALOGUE_COLUMNS, item) for item in found], lines=lines
@@ -203,19 +203,29 @@ def _format_heading(column: CatalogueColumn) -> str:
     return f"{column.name}{'' if column.display_unit == '1' else f' [{column.display_unit}]'}"
 
 
-def _format_number(entry: CatalogueEntry, column: CatalogueColumn) -> str:
+def _format_number(catalogue_entry: CatalogueEntry, column: CatalogueColumn) -> str:
     """Format one number of a catalogue entry, at least as wide as the heading of its column."""
     width = len(_format_heading(column))
-    if (number := entry.numbers.get(column.name)) is None:
+    if (number := catalogue_entry.numbers.get(column.name)) is None:
         return f"{'-':{width}}"
-    mark = ("~" if number.kind == "estimate" else "") + ("<" if number.is_upper_limit else "")
+    mark = ("~" if number.origin == "estimate" else "") + ("<" if number.is_upper_limit else "")
     return (
         f"{mark + format(number.value * conversion_factor(column.unit, column.display_unit), '.4g'):{width}}"
     )
 
 
-def _entry_to_json(columns: Sequence[CatalogueColumn], entry: CatalogueEntry) -> dict[str, Any]:
+def _entry_to_json(columns: Sequence[CatalogueColumn], catalogue_entry: CatalogueEntry) -> dict[str, Any]:
     """JSON object of a catalogue entry: numbers in SI units, with origin and source."""
     units = {column.name: column.unit for column in columns}
-    numbers = {name: number._asdict() | {"unit": units[name]} for name, number in entry.numbers.items()}
-    return {"joint": "harmonic_drive", "name": entry.name, "numbers": numbers}
+    numbers = {
+        name: {
+            "value": number.value,
+            "kind": number.origin,
+            "source": number.source,
+            "is_upper_limit": number.is_upper_limit,
+            "interval": number.interval,
+            "unit": units[name],
+        }
+        for name, number in catalogue_entry.numbers.items()
+    }
+    return {"joint": "harmonic_drive", "name": catalogue_entry.name, "numbers": numbers}

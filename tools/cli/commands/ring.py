@@ -111,7 +111,7 @@ def _run_decays(args: argparse.Namespace, joint: Any) -> CommandResult:
 
 
 def _collect_decay_columns(decay: Any) -> tuple[np.ndarray[Any, Any], ...]:
-    """Columns of a free decay: load, amplitude, frequencies [Hz], damping ratios [1].
+    """Collect the columns of a free decay: load, amplitude, frequencies [Hz], damping ratios [1].
 
     Frequency and damping ratio are stated twice: measured in the simulated decay, and computed from the
     joint's hysteresis loop of the same amplitude.

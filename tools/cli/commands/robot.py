@@ -202,7 +202,7 @@ def run(args: argparse.Namespace) -> CommandResult:
 def _describe_other_poses(
     weight_torques: Sequence[tuple[Any, float]], largest_torques: Sequence[float]
 ) -> list[str]:
-    """Warnings of axes that are overloaded in a pose of the grid, and less so in the pose of the results.
+    """Warn of axes that are overloaded in a pose of the grid, and less so in the pose of the results.
 
     weight_torques  : axes with their torques [N.m] in the pose of the results
     largest_torques : largest torques [N.m] of the poses over the grid

@@ -128,7 +128,7 @@ def _sample_count(args: argparse.Namespace, default: int) -> int:
 
 
 def _make_execution(args: argparse.Namespace) -> "Execution":
-    """Execution of the runs of a study, from the options: local processes, or a dask cluster."""
+    """Make the execution of the runs of a study, from the options: local processes, or a dask cluster."""
     from ...studies.uncertainty.runs import Execution
 
     if args.workers is not None and args.workers < 1:

@@ -94,7 +94,7 @@ class Exports:
 
 
 def load_exports(joint_name: str) -> Exports:
-    """Exports that a joint offers."""
+    """Import the exports that a joint offers."""
     module = load_tool_module(KINDS[joint_name], "export")
     exports: Exports = module.EXPORTS if module else Exports()
     return exports

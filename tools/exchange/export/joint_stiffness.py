@@ -82,7 +82,7 @@ def rigid_arm(node_position: Array) -> Array:
 
 
 def describe(stiffness: JointStiffness, placement: Placement) -> Sequence[str]:
-    """Comment lines of an exported stiffness matrix: meaning, frame and point, positions of the nodes."""
+    """Describe the stiffness matrix in comment lines: meaning, frame and point, positions of the nodes."""
     axes = ["xyz"[axis] for axis in AXIS_ORDER[placement.normal_axis]]
     diagonal = ", ".join(f"{name} {value:.9g}" for name, value in stiffness.totals().items())
     nodes = [

@@ -71,20 +71,20 @@ def read_node_pairs(path: str | Path) -> NodePairs:
     return NodePairs(table.path, nodes, position - np.average(position, axis=0, weights=area), area, pressure)
 
 
-def _read_node_labels(table: Columns, column_name: str) -> NDArray[np.int64]:
+def _read_node_labels(mesh_columns: Columns, column_name: str) -> NDArray[np.int64]:
     """Read a column of node labels. Raises ValueError for a label that is no positive whole number."""
-    value = table.require_column(column_name, COLUMN_UNITS)
+    value = mesh_columns.require_column(column_name, COLUMN_UNITS)
     bad = (value != np.round(value)) | (value < 1.0) | (value > MAX_NODE_LABEL)
     if np.any(bad):
         raise ValueError(
-            f"{table.path}: {column_name} = {value[bad][0]:.10g} is not a node; "
+            f"{mesh_columns.path}: {column_name} = {value[bad][0]:.10g} is not a node; "
             f"expected a whole number in [1, {MAX_NODE_LABEL}]"
         )
     return value.astype(np.int64)
 
 
 def _check_values(
-    table: Columns,
+    mesh_columns: Columns,
     node_labels: NDArray[np.int64],
     column_name: str,
     column_values: Array,
@@ -94,6 +94,6 @@ def _check_values(
     """Raise ValueError with the node, if values of a column are invalid."""
     if np.any(invalid_rows):
         raise ValueError(
-            f"{table.path}: {column_name} = {column_values[invalid_rows][0]:g} (SI) at node "
+            f"{mesh_columns.path}: {column_name} = {column_values[invalid_rows][0]:g} (SI) at node "
             f"{node_labels[invalid_rows][0, 0]}: {refusal_reason}"
         )

@@ -74,9 +74,9 @@ def _format_matrix(stiffness_matrix: Array, first_label: int) -> Iterable[str]:
             yield f"{'*':<8}{first_label + i // 6:<16}{i % 6 + 1:<16}{value:<16}"
 
 
-def _large_card(name: str, *fields: object) -> Iterable[str]:
+def _large_card(card_name: str, *fields: object) -> Iterable[str]:
     """Format a card of NASTRAN with fields of 16 characters, four in a line."""
     cells = [f"{x:.9E}" if isinstance(x, float) else f"{x}" for x in fields]
     for i in range(0, len(cells), 4):
-        mark = f"{name}*" if i == 0 else "*"
+        mark = f"{card_name}*" if i == 0 else "*"
         yield f"{mark:<8}" + "".join(f"{cell:<16}" for cell in cells[i : i + 4]).rstrip()

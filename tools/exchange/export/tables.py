@@ -63,7 +63,7 @@ def tabulate_law(curve: Curve, max_error: float) -> LoadTable:
 def fit_row_limit(
     tabulate: Callable[[float], LoadTable], min_error: float, max_rows: int
 ) -> tuple[float, LoadTable]:
-    """Smallest error [1], with two digits, whose table has at most `max_rows` rows; and this table.
+    """Find the smallest error [1], with two digits, whose table has at most `max_rows` rows; and this table.
 
     tabulate  : (largest relative error [1]) -> table; a larger error gives fewer rows
     min_error : an error [1], a power of ten, whose table has more rows
@@ -120,7 +120,7 @@ def tabulate_odd_curve(curve: Curve, max_error: float) -> LoadTable:
 
 def decimate_curve(
     displacement: Array,
-    load: Array,
+    curve_loads: Array,
     stiffness: Array,
     max_error: float,
     min_reference: tuple[float, float] = (0.0, 0.0),
@@ -129,31 +129,34 @@ def decimate_curve(
 ) -> LoadTable:
     """Select few of the points (n) of a curve so that linear interpolation stays within an error.
 
-    displacement, load, stiffness : points (n) of the curve
-    max_error       : [1] largest error of the load, relative to the load, or to min_reference[0] if that is
+    displacement, curve_loads, stiffness : points (n) of the curve
+    max_error : [1] largest error of the load, relative to the load, or to min_reference[0] if that is
                       larger
-    min_reference   : smallest load and stiffness to which errors are relative
-    fixed_points    : indices of points that are always selected
+    min_reference : smallest load and stiffness to which errors are relative
+    fixed_points : indices of points that are always selected
     stiffness_error : [1] largest relative error of the slope of a line
 
     The points are selected one after the other. Raises ValueError if the error is out of range or too small.
     """
     if not 0.0 < max_error < MAX_TABLE_ERROR:
         raise ValueError(f"error = {max_error:g} is outside (0, {MAX_TABLE_ERROR:g})")
-    size = np.maximum(np.abs(load), min_reference[0])
+    size = np.maximum(np.abs(curve_loads), min_reference[0])
     size = np.where(size > 0.0, size, np.inf)
 
     def error_ratio(first_point: int, last_point: int) -> float:
         """Largest error on a straight line between two points of the curve, over the allowed error [1]."""
-        slope = (load[last_point] - load[first_point]) / (
+        slope = (curve_loads[last_point] - curve_loads[first_point]) / (
             displacement[last_point] - displacement[first_point]
         )
-        line = load[first_point] + slope * (
+        line = curve_loads[first_point] + slope * (
             displacement[first_point : last_point + 1] - displacement[first_point]
         )
         loads = (
             float(
-                np.max(np.abs(line - load[first_point : last_point + 1]) / size[first_point : last_point + 1])
+                np.max(
+                    np.abs(line - curve_loads[first_point : last_point + 1])
+                    / size[first_point : last_point + 1]
+                )
             )
             / max_error
         )
@@ -171,17 +174,17 @@ def decimate_curve(
         raise ValueError(
             f"error = {max_error:g} is too small for a table; it would have {index.size} rows or more"
         )
-    rows = np.stack([displacement[index], load[index], stiffness[index]], axis=1)
-    return LoadTable(rows, *_interpolation_errors(rows, displacement, load, stiffness, min_reference))
+    rows = np.stack([displacement[index], curve_loads[index], stiffness[index]], axis=1)
+    return LoadTable(rows, *_interpolation_errors(rows, displacement, curve_loads, stiffness, min_reference))
 
 
 def _interpolation_errors(
-    rows: Array, displacement: Array, load: Array, stiffness: Array, min_reference: tuple[float, float]
+    table_rows: Array, displacement: Array, load: Array, stiffness: Array, min_reference: tuple[float, float]
 ) -> tuple[tuple[float, float], tuple[float, float]]:
     """Largest relative errors of load and stiffness: with linear interpolation, with the monotone cubic."""
-    which = np.clip(np.searchsorted(rows[:, 0], displacement, side="right") - 1, 0, len(rows) - 2)
-    slope = np.array([(b[1] - a[1]) / (b[0] - a[0]) for a, b in pairwise(rows)])[which]
-    cubic = PchipInterpolator(rows[:, 0], rows[:, 1])
+    which = np.clip(np.searchsorted(table_rows[:, 0], displacement, side="right") - 1, 0, len(table_rows) - 2)
+    slope = np.array([(b[1] - a[1]) / (b[0] - a[0]) for a, b in pairwise(table_rows)])[which]
+    cubic = PchipInterpolator(table_rows[:, 0], table_rows[:, 1])
 
     def largest_error(interpolated_values: Array, exact_values: Array, min_reference_value: float) -> float:
         """Largest error of interpolated values, relative to the values or to a smallest reference [1]."""
@@ -190,7 +193,7 @@ def _interpolation_errors(
         return float(np.max(np.abs(interpolated_values - exact_values)[positive] / size[positive]))
 
     straight = (
-        largest_error(np.interp(displacement, rows[:, 0], rows[:, 1]), load, min_reference[0]),
+        largest_error(np.interp(displacement, table_rows[:, 0], table_rows[:, 1]), load, min_reference[0]),
         largest_error(slope, stiffness, min_reference[1]),
     )
     return straight, (

@@ -169,7 +169,9 @@ def export_contact(
         *more,
     ]
     write, notes = _CONTACT_WRITERS[file_format]
-    return ExportedFile(write(table, unit_set, [*about, *warnings, *notes]), _table_facts(table), warnings)
+    return ExportedFile(
+        write(table, unit_set, [*about, *warnings, *notes]), _list_table_errors(table), warnings
+    )
 
 
 def export_curve(
@@ -197,7 +199,7 @@ def export_curve(
         f"{table.monotone_cubic_errors[1]:.2g}",
     ]
     if file_format == "modelica":
-        facts = {"table": load.table_name, **_table_facts(table)}
+        facts = {"table": load.table_name, **_list_table_errors(table)}
         return ExportedFile(
             tables.format_modelica_table(table.rows, load.table_name, about),
             facts,
@@ -205,7 +207,7 @@ def export_curve(
         )
     return ExportedFile(
         tables.format_columns_csv([*table.rows.T], heads, unit_set, about),
-        _table_facts(table),
+        _list_table_errors(table),
         _stiffness_warnings(table),
     )
 
@@ -221,8 +223,8 @@ def _stiffness_warnings(load_table: tables.LoadTable) -> tuple[str, ...]:
     )
 
 
-def _table_facts(load_table: tables.LoadTable) -> dict[str, object]:
-    """Facts about an exported table: number of rows, errors of load and stiffness."""
+def _list_table_errors(load_table: tables.LoadTable) -> dict[str, object]:
+    """List the row count of an exported table, and its interpolation errors of load and stiffness [1]."""
     return {
         "rows": len(load_table.rows),
         "error": load_table.linear_errors[0],

@@ -162,9 +162,15 @@ def _flange_template_variables(
     }
 
 
-def _format_connection_line(start: tuple[float, float], end: tuple[float, float], color: str) -> str:
+def _format_connection_line(
+    start_point: tuple[float, float], end_point: tuple[float, float], color: str
+) -> str:
     """Format the line of a connection: horizontal, vertical at half width, horizontal."""
-    middle = 0.5 * (start[0] + end[0])
-    corners = [start, (middle, start[1]), (middle, end[1]), end] if start[1] != end[1] else [start, end]
+    middle = 0.5 * (start_point[0] + end_point[0])
+    corners = (
+        [start_point, (middle, start_point[1]), (middle, end_point[1]), end_point]
+        if start_point[1] != end_point[1]
+        else [start_point, end_point]
+    )
     points = ",".join(f"{{{x:g},{y:g}}}" for x, y in corners)
     return f"Line(points={{{points}}}, color={color})"

@@ -25,7 +25,7 @@ _NOMINAL_STATE_VALUES = {"phi": "1e-3", "w": "0.1", "s": "1e-6", "v": "1e-3"}
 """{state: nominal value [SI]} of bodies."""
 _WEIGHT_PARAMETERS = ("m", "l")
 """Parameters of a rotational inertia that become parameters of a component `LinkWeight`."""
-_COLUMN_SPACING, _ROW_SPACING = 30, 30
+_DIAGRAM_COLUMN_SPACING, _DIAGRAM_ROW_SPACING = 30, 30
 """Distances on the diagram: between columns of components, and between rows."""
 
 RecordLookup = Callable[[str, ParameterFile, tuple[float, ...]], ModelicaRecord | None]
@@ -59,16 +59,20 @@ def render_system_model(
     declarations: list[ComponentDeclaration] = []
     lines: list[tuple[str, str, str]] = []
 
-    def declare(component_type: str, name: str, modifications: Iterable[str], neighbour: str = "") -> None:
+    def declare(
+        component_type: str, component_name: str, modifications: Iterable[str], neighbour: str = ""
+    ) -> None:
         """Declare a component; it is placed to the right of its component `neighbour`."""
-        x, y = positions[neighbour or name]
+        x, y = positions[neighbour or component_name]
         if neighbour:
-            x += _COLUMN_SPACING
-            y -= _ROW_SPACING * sum(
+            x += _DIAGRAM_COLUMN_SPACING
+            y -= _DIAGRAM_ROW_SPACING * sum(
                 (declared.diagram_x, declared.diagram_y) == (x, y) for declared in declarations
             )
-        declarations.append(ComponentDeclaration(component_type, name, ", ".join(modifications), x, y))
-        positions[name] = (x, y)
+        declarations.append(
+            ComponentDeclaration(component_type, component_name, ", ".join(modifications), x, y)
+        )
+        positions[component_name] = (x, y)
 
     def connect(start_flange: str, end_flange: str) -> None:
         """Connect two flanges, `component.flange`."""
@@ -115,17 +119,25 @@ def model_name(system: System) -> str:
     return system.name.title().replace("_", "")
 
 
-def _flange_name(end: ConnectionEnd) -> str | None:
+def _flange_name(connection_end: ConnectionEnd) -> str | None:
     """Name `component.flange` of the end of a connection; None if the component has no such flange."""
-    assert end.component
-    name = end.component.name
-    if end.is_load:
-        (first, *_) = end.variables_by_member
-        return f"{name}.flange" if end.component.model_name == "AngleProfile" else f"{name}_{first}.flange"
-    assert end.flange
-    shaft = end.flange.name.removeprefix("flange")
-    flange = f"flange_{end.flange.side}" if shaft.isdigit() else end.flange.name
-    return f"{name}.{flange}" if end.is_body or flange in _modelica_component(end.component).flanges else None
+    assert connection_end.component
+    name = connection_end.component.name
+    if connection_end.is_load:
+        (first, *_) = connection_end.variables_by_member
+        return (
+            f"{name}.flange"
+            if connection_end.component.model_name == "AngleProfile"
+            else f"{name}_{first}.flange"
+        )
+    assert connection_end.flange
+    shaft = connection_end.flange.name.removeprefix("flange")
+    flange = f"flange_{connection_end.flange.side}" if shaft.isdigit() else connection_end.flange.name
+    return (
+        f"{name}.{flange}"
+        if connection_end.is_body or flange in _modelica_component(connection_end.component).flanges
+        else None
+    )
 
 
 def _modelica_component(system_component: Part) -> ModelicaComponent:
@@ -260,7 +272,7 @@ def _diagram_positions(
     order = list(system.components)
     chains.sort(key=lambda chain: min(map(order.index, chain)))
     return {
-        name: (_COLUMN_SPACING * column * 2 - 80, 80 - _ROW_SPACING * row)
+        name: (_DIAGRAM_COLUMN_SPACING * column * 2 - 80, 80 - _DIAGRAM_ROW_SPACING * row)
         for row, chain in enumerate(chains)
         for column, name in enumerate(sorted(chain, key=order.index))
     }
@@ -276,25 +288,28 @@ def _format_value_sources(system: System) -> str:
     return f"<table>\n<tr><th>number</th><th>value</th><th>source</th></tr>\n{rows}</table>"
 
 
-def _find_value_sources(part: Part) -> dict[str, tuple[str, str]]:
+def _find_value_sources(component_part: Part) -> dict[str, tuple[str, str]]:
     """{parameter as the Modelica model names it: (value with unit, source)} of a component."""
     rows: dict[str, tuple[str, str]] = {}
-    for name, value in part.values.items():
-        text, source = f"{format_number(value)} {part.units[name].replace('.', ' ')}", part.sources[name]
-        if part.parameter_file:
-            component = _modelica_component(part)
+    for name, value in component_part.values.items():
+        text, source = (
+            f"{format_number(value)} {component_part.units[name].replace('.', ' ')}",
+            component_part.sources[name],
+        )
+        if component_part.parameter_file:
+            component = _modelica_component(component_part)
             if name in component.component_only_parameters:
-                for parameter, number in component.system_parameters(part.parameter_file).items():
+                for parameter, number in component.system_parameters(component_part.parameter_file).items():
                     computed = f"{number} {component.system_parameter_units[parameter].replace('.', ' ')}"
-                    rows[f"{part.name}.{parameter}"] = (computed, f"from {name} = {text}: {source}")
+                    rows[f"{component_part.name}.{parameter}"] = (computed, f"from {name} = {text}: {source}")
                 continue
-            in_record = name in KINDS[part.joint_kind].working_point
+            in_record = name in KINDS[component_part.joint_kind].working_point
             path = f"data.{name}" if in_record else component.fixed_input_parameters.get(name, name)
-            rows[f"{part.name}.{path}"] = (text, source)
-        elif part.model_name == "RotationalInertia" and name in _WEIGHT_PARAMETERS:
-            if _has_weight(part):
-                rows[f"{part.name}_weight.{name}"] = (text, source)
+            rows[f"{component_part.name}.{path}"] = (text, source)
+        elif component_part.model_name == "RotationalInertia" and name in _WEIGHT_PARAMETERS:
+            if _has_weight(component_part):
+                rows[f"{component_part.name}_weight.{name}"] = (text, source)
         else:
             path = f"p[{name[1:]}]" if name[1:].isdigit() else name
-            rows[f"{part.name}.{path}"] = (text, source)
+            rows[f"{component_part.name}.{path}"] = (text, source)
     return rows

@@ -44,7 +44,7 @@ def plugin(fmu: str | Path, out: str | Path) -> Path:
 
 
 def _read_sources(fmu: Path) -> tuple[str, dict[str, str]]:
-    """Name of an FMU and {file name: text} of its C sources.
+    """Read the name of an FMU and {file name: text} of its C sources.
 
     Raises ValueError if the FMU has no two flanges or no sources.
     """

@@ -187,7 +187,7 @@ def add_drives(robot_spec: Any, axes_with_drive: list[ElasticAxis], has_springs:
 
 
 def _list_tendons(axis: ElasticAxis) -> Iterator[tuple[str, list[float], list[float], float]]:
-    """Yield name, stiffness, damping and yield wind-up of each tendon of a drive."""
+    """List the MuJoCo tendons of a drive: name, stiffness, damping, and wind-up [rad] at which it slips."""
     fitted, zero = axis.spring, [0.0, 0.0, 0.0]
     name = f"{axis.joint}_drive"
     yield name, [fitted.linear_stiffness, 0.0, fitted.cubic_stiffness], [axis.drive.damping, 0.0, 0.0], 0.0

@@ -56,7 +56,7 @@ MAX_DISPLACEMENT_CORRECTION = 10.0
 def reduce_bodies(
     linear_joint: LinearJoint, reduced_joint: BoltedJointSpring, normal_stiffness: Array, preload: float
 ) -> ElasticBodies:
-    """Modes of the elastic bodies at the points, patches and bolts of a joint, for a preload [N] per bolt.
+    """Reduce the elastic bodies to modes at the points, patches and bolts, at a preload [N] per bolt.
 
     linear_joint     : linear finite-element model of the joint
     reduced_joint    : the reduced joint

@@ -39,7 +39,7 @@ MIN_DISPLACEMENT = 1e-15
 MIN_LOSS_OVER_WORK = 0.01
 """Loss per cycle over the work of the stick forces [1]: lower limit for scales of losses. Rough surfaces lose
 more at the smallest motion; an interface of constant stiffness loses nothing below its friction limit."""
-MIN_SQUARE_RATIO = 1e-12
+MIN_OVER_MAX_MEAN_SQUARE_DISTANCE = 1e-12
 """Mean square distance of the points of a cell from its centre over the largest one [1]; below: round-off."""
 MIN_RELATIVE_DISPLACEMENT_SCALE = 0.03
 """Lower limit of the scale of patch displacements by a mode, over the largest scale of all modes [1]."""
@@ -401,7 +401,9 @@ def patch_rotations(
     x, y = (quadrature_position - (averaging_matrix @ quadrature_position)[cell]).T
     lever = x[:, None] * tangential_displacements[1] - y[:, None] * tangential_displacements[0]
     square = averaging_matrix @ (x * x + y * y)
-    extended = square > MIN_SQUARE_RATIO * square.max()  # a cell with one point does not rotate
+    extended = (
+        square > MIN_OVER_MAX_MEAN_SQUARE_DISTANCE * square.max()
+    )  # a cell with one point does not rotate
     inverse = np.where(extended, 1.0 / np.where(extended, square, 1.0), 0.0)
     return np.asarray(inverse[:, None] * (averaging_matrix @ lever))
 

@@ -111,17 +111,17 @@ class UnitLoadResponse:
 
 
 def _solve_body(
-    joint: JointFiniteElements, body: int, unit_loads: sp.csr_matrix, displacement: Array
+    joint: JointFiniteElements, body_index: int, unit_loads: sp.csr_matrix, displacement: Array
 ) -> None:
     """Solve for displacements (n, k) [m/N] of a body under unit loads (k, n) [1]; its attachment is fixed.
 
-    body         : index of the body
+    body_index   : index of the body
     displacement : (n, k) of zeros, to which the result is written
     """
-    stiffness, fixed_unknowns = joint.stiffness_matrices[body], joint.attachment_unknowns[body]
+    stiffness, fixed_unknowns = joint.stiffness_matrices[body_index], joint.attachment_unknowns[body_index]
     free = np.setdiff1d(np.arange(len(displacement)), fixed_unknowns)
     matrix = stiffness[free][:, free]
-    reflections = find_reflections(matrix, [joint.bodies[body]], free)
+    reflections = find_reflections(matrix, [joint.bodies[body_index]], free)
     displacement[free] = SymmetricFactorisation(matrix, reflections).solve(unit_loads[:, free].T.tocsc())
 
 

@@ -80,7 +80,7 @@ DEFAULT_RMS_SLOPE = 0.1
 """Rms slope [1] of a surface if only its height is known."""
 DEFAULT_HURST_EXPONENT = 0.8
 """Hurst exponent [1] of a surface if only its height is known."""
-DEFAULT_FREQUENCY_RATIO = 1.5
+DEFAULT_WAVE_FREQUENCY_RATIO = 1.5
 """Frequency ratio gamma of neighbouring waves of the Weierstrass-Mandelbrot function [1]."""
 RZ_OVER_RA, RZ_OVER_RA_LIMITS = 6.25, (4.0, 10.0)
 """Ratio Rz/Ra of machined faces [1] and its range: Rz 10 um for Ra 1.6 um, as on drawings; turned faces have
@@ -161,12 +161,12 @@ def add_faces(parameter_sheet: ParameterSheet, options: DrawingOptions) -> Heigh
         for name in ("E", "nu", "alpha"):
             known = material.numbers[name]
             parameter_sheet.add_parameter(
-                f"{prefix}.{name}", known.value, known.kind, f"{material.title}: {known.source}"
+                f"{prefix}.{name}", known.value, known.origin, f"{material.title}: {known.source}"
             )
     soft = min(pair, key=lambda material: material.numbers["H"].value)
     if options["hardness"] is None:
         known = soft.numbers["H"]
-        parameter_sheet.add_parameter("H", known.value, known.kind, f"{soft.title}: {known.source}")
+        parameter_sheet.add_parameter("H", known.value, known.origin, f"{soft.title}: {known.source}")
     else:
         parameter_sheet.add_drawing_number("H", parse_quantity("hardness", options["hardness"]))
     if options["mu"] is None:
@@ -257,7 +257,9 @@ def _add_fractal_parameters(parameter_sheet: ParameterSheet) -> None:
     D, text = 2.0 - hurst, f"rms height {h:.3g} m of all waves up to {wave:g} m"
     parameter_sheet.add_parameter("surface.D", D, "estimate", f"2 - H with the Hurst exponent {hurst:g}")
     parameter_sheet.add_parameter("surface.G", fractal_roughness(D, h, wave), "derived", text)
-    parameter_sheet.add_parameter("surface.gamma", DEFAULT_FREQUENCY_RATIO, "estimate", "the usual value")
+    parameter_sheet.add_parameter(
+        "surface.gamma", DEFAULT_WAVE_FREQUENCY_RATIO, "estimate", "the usual value"
+    )
 
 
 def fractal_roughness(D: float, h: float, longest_wave: float) -> float:
@@ -400,7 +402,7 @@ def _face_from_scan(path: str, options: DrawingOptions) -> Face:
 
 
 def height_fact(parameter_file: ParameterFile) -> dict[str, tuple[float, str, str]]:
-    """Fact about the combined rms height of both faces of a new joint; empty if the height is not known."""
+    """Fact about the combined rms height of both faces of a new joint; empty if the height is unknown."""
     h = find_rms_height(parameter_file)
     return {} if h is None else {"h": (float(h), "m", "combined rms height of both faces")}
 

@@ -68,15 +68,15 @@ def add_interface_table(parameter_sheet: ParameterSheet, path: Path, default_rat
     _add_level_range(parameter_sheet, data, source)
 
 
-def _add_level_range(parameter_sheet: ParameterSheet, data: columns.Columns, source: str) -> None:
+def _add_level_range(parameter_sheet: ParameterSheet, table_columns: columns.Columns, source: str) -> None:
     """Add the range of `table.factor` that the columns stiffness_low and stiffness_high state, if any."""
-    K = data.columns["stiffness"]
-    low, high = (data.columns.get(f"stiffness_{end}", K) for end in ("low", "high"))
+    K = table_columns.columns["stiffness"]
+    low, high = (table_columns.columns.get(f"stiffness_{end}", K) for end in ("low", "high"))
     if np.any(wrong := (low > K) | (high < K)):
         i = int(np.argmax(wrong))
         raise ValueError(
-            f"{data.path}: line {data.line_numbers[i]}: stiffness = {K[i]:g} Pa/m is outside [{low[i]:g}, "
-            f"{high[i]:g}], its stiffness_low and stiffness_high"
+            f"{table_columns.path}: line {table_columns.line_numbers[i]}: stiffness = {K[i]:g} Pa/m is "
+            f"outside [{low[i]:g}, {high[i]:g}], its stiffness_low and stiffness_high"
         )
     ends = float(np.min(low / K)), float(np.max(high / K))
     if ends[0] < ends[1]:

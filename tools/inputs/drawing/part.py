@@ -67,11 +67,11 @@ class ParameterSheet:
     ranges: dict[str, tuple[float, float]] = field(default_factory=dict)
     roughness: dict[str, tuple[float, str, str]] = field(default_factory=dict)
 
-    def add_parameter(self, parameter_name: str, value: Any, kind: str, source: str) -> None:
+    def add_parameter(self, parameter_name: str, value: Any, origin: str, source: str) -> None:
         """Add a parameter; with the prefix `inputs.`, the start value of an input."""
         if parameter_name.startswith("inputs."):
             self.inputs[parameter_name.removeprefix("inputs.")] = value
-        self.entries[parameter_name] = (value, kind, source)
+        self.entries[parameter_name] = (value, origin, source)
 
     def set_parameter_range(self, parameter_name: str, low: float, high: float) -> None:
         """Set the lower and upper limit that the source of a parameter states."""
@@ -81,18 +81,21 @@ class ParameterSheet:
         """Add a parameter whose value the user states on the drawing."""
         self.add_parameter(parameter_name, value, "user", "stated on the drawing")
 
-    def add_drawing_number(self, parameter_name: str, number: StatedNumber) -> None:
+    def add_drawing_number(self, parameter_name: str, stated_number: StatedNumber) -> None:
         """Add a number that the user states on the drawing, with its range if the user states one."""
-        text = f"stated on the drawing: {number.low:g} to {number.high:g}, taken as the middle"
+        text = f"stated on the drawing: {stated_number.low:g} to {stated_number.high:g}, taken as the middle"
         self.add_parameter(
-            parameter_name, number.value, "user", text if number.is_range else "stated on the drawing"
+            parameter_name,
+            stated_number.value,
+            "user",
+            text if stated_number.is_range else "stated on the drawing",
         )
-        if number.is_range:
-            self.set_parameter_range(parameter_name, number.low, number.high)
+        if stated_number.is_range:
+            self.set_parameter_range(parameter_name, stated_number.low, stated_number.high)
 
-    def add_sourced_number(self, parameter_name: str, number: SourcedNumber) -> None:
+    def add_sourced_number(self, parameter_name: str, sourced_number: SourcedNumber) -> None:
         """Add a parameter with the value and source of a tabulated number."""
-        self.add_parameter(parameter_name, number.value, number.kind, number.source)
+        self.add_parameter(parameter_name, sourced_number.value, sourced_number.origin, sourced_number.source)
 
     def get_value(self, parameter_name: str) -> Any:
         """Value of a parameter that was added before."""

@@ -75,10 +75,10 @@ BRINELL_AND_VICKERS = dict.fromkeys(("HB", "HBW", "HV"), KGF_PER_MM2)
 
 def _declare_length(
     meaning: str,
-    low: float,
-    high: float,
+    min_plausible: float,
+    max_plausible: float,
     *,
-    limit: float = math.inf,
+    max_allowed: float = math.inf,
     allows_zero: bool = False,
     has_sign: bool = False,
 ) -> DrawingQuantity:
@@ -87,22 +87,22 @@ def _declare_length(
         meaning,
         "mm",
         "m",
-        (low, high),
-        limits=(0.0, limit),
+        (min_plausible, max_plausible),
+        limits=(0.0, max_allowed),
         other_units=("m", "um"),
         allows_zero=allows_zero,
         has_sign=has_sign,
     )
 
 
-def _declare_height(name: str, high: float) -> DrawingQuantity:
+def _declare_height(name: str, max_plausible: float) -> DrawingQuantity:
     """Declare a roughness height in um, up to a plausible limit [um]."""
     return DrawingQuantity(
         f"{name} of machined surfaces",
         "um",
         "m",
-        (0.005, high),
-        limits=(MIN_HEIGHT, high),
+        (0.005, max_plausible),
+        limits=(MIN_HEIGHT, max_plausible),
         other_units=("m", "mm", "nm"),
         allows_range=True,
     )
@@ -114,14 +114,19 @@ def _declare_friction(meaning: str) -> DrawingQuantity:
 
 
 def _declare_torque(
-    meaning: str, low: float, high: float, *, allows_zero: bool = False, allows_range: bool = False
+    meaning: str,
+    min_plausible: float,
+    max_plausible: float,
+    *,
+    allows_zero: bool = False,
+    allows_range: bool = False,
 ) -> DrawingQuantity:
     """Declare a torque in N.m, with its plausible range [N.m]."""
     return DrawingQuantity(
         meaning,
         "N.m",
         "N.m",
-        (low, high),
+        (min_plausible, max_plausible),
         other_units=("kN.m", "mN.m"),
         allows_zero=allows_zero,
         allows_range=allows_range,
@@ -135,9 +140,9 @@ QUANTITIES: Mapping[str, DrawingQuantity] = {
     "circle": _declare_length("diameter of a pitch circle", 4.0, 2e4),
     "grip": _declare_length("clamped length", 0.5, 5e3),
     "thickness": _declare_length("thickness of a plate", 0.5, 3e3),
-    "hole": _declare_length("diameter of a hole", 2.0, 150.0, limit=150.0),
-    "bearing": _declare_length("diameter of a bearing surface", 3.0, 400.0, limit=400.0),
-    "washers": _declare_length("diameter or thickness of a washer", 0.2, 400.0, limit=400.0),
+    "hole": _declare_length("diameter of a hole", 2.0, 150.0, max_allowed=150.0),
+    "bearing": _declare_length("diameter of a bearing surface", 3.0, 400.0, max_allowed=400.0),
+    "washers": _declare_length("diameter or thickness of a washer", 0.2, 400.0, max_allowed=400.0),
     "preload": DrawingQuantity(
         "preload of a bolt", "N", "N", (100.0, 3e6), other_units=("kN",), allows_range=True
     ),
@@ -231,77 +236,77 @@ QUANTITIES: Mapping[str, DrawingQuantity] = {
 """{option of `jointfmu new`: quantity}: the same option has the same quantity in all joints."""
 
 
-def parse_quantity(option: str, text: str, default_unit: str | None = None) -> StatedNumber:
+def parse_quantity(option_name: str, text: str, default_unit: str | None = None) -> StatedNumber:
     """Parse the number of an option, or its range LOW..HIGH; the value of a range is its middle.
 
-    option       : name of the option, a key of QUANTITIES
+    option_name  : name of the option, a key of QUANTITIES
     default_unit : unit of a number without one, if it differs from that of the quantity; such a number is
                    not compared with the plausible range
 
     Raises ValueError, one line, for text that is not a number, a wrong unit, or a value that is not allowed
     or not plausible.
     """
-    quantity = QUANTITIES[option]
+    quantity = QUANTITIES[option_name]
     match = _RANGE_PATTERN.fullmatch(text.strip())
     if not match:
-        value = _parse_value(option, text, default_unit)
+        value = _parse_value(option_name, text, default_unit)
         return StatedNumber(value, value, value)
     if not quantity.allows_range:
-        raise ValueError(f"{format_option_flag(option)} = {text!r} is a range; expected one number")
+        raise ValueError(f"{format_option_flag(option_name)} = {text!r} is a range; expected one number")
     unit = number[2] if (number := NUMBER_PATTERN.fullmatch(match[2])) else ""
     has_unit = (first := NUMBER_PATTERN.fullmatch(match[1])) is None or first[2]
     low, high = (
-        _parse_value(option, end, default_unit)
+        _parse_value(option_name, end, default_unit)
         for end in (match[1] if has_unit else match[1] + unit, match[2])
     )
     if not low < high:
-        raise ValueError(f"{format_option_flag(option)} = {text!r} is not a range; expected LOW..HIGH")
+        raise ValueError(f"{format_option_flag(option_name)} = {text!r} is not a range; expected LOW..HIGH")
     return StatedNumber(0.5 * (low + high), low, high)
 
 
-def parse_value(option: str, text: str, default_unit: str | None = None) -> float:
+def parse_value(option_name: str, text: str, default_unit: str | None = None) -> float:
     """Parse the number of an option in its SI unit. Raises ValueError as `parse_quantity`, or for a range."""
-    number = parse_quantity(option, text, default_unit)
+    number = parse_quantity(option_name, text, default_unit)
     if number.is_range:
-        raise ValueError(f"{format_option_flag(option)} = {text!r} is a range; expected one number")
+        raise ValueError(f"{format_option_flag(option_name)} = {text!r} is a range; expected one number")
     return number.value
 
 
-def parse_values(option: str, text: str, *, separator: str, count: int) -> list[float]:
+def parse_values(option_name: str, text: str, *, separator: str, value_count: int) -> list[float]:
     """Parse several numbers of an option with a separator between them, as in 200x100.
 
-    count : how many numbers there must be
+    value_count : how many numbers there must be
 
     Raises ValueError for another count, and as `parse_value`.
     """
     words = text.split(separator)
-    if len(words) != count:
-        example = separator.join(["200", "100"][:count])
+    if len(words) != value_count:
+        example = separator.join(["200", "100"][:value_count])
         raise ValueError(
-            f"{format_option_flag(option)} = {text!r} has {len(words)} numbers, expected {count}, as "
-            f"in {example}"
+            f"{format_option_flag(option_name)} = {text!r} has {len(words)} numbers, expected "
+            f"{value_count}, as in {example}"
         )
-    return [parse_value(option, word) for word in words]
+    return [parse_value(option_name, word) for word in words]
 
 
-def _parse_value(option: str, text: str, default_unit: str | None) -> float:
+def _parse_value(option_name: str, number_text: str, default_unit: str | None) -> float:
     """Parse one number in the SI unit of its option."""
-    quantity, flag = QUANTITIES[option], format_option_flag(option)
+    quantity, flag = QUANTITIES[option_name], format_option_flag(option_name)
     unit = default_unit or quantity.unit
     example = f"expected a number in {unit}, or with its unit as in 1{unit}"
     if unit == "1":
         example = "expected a number without a unit"
-    check_separators(option, text)
-    match = NUMBER_PATTERN.fullmatch(text.strip())
+    check_separators(option_name, number_text)
+    match = NUMBER_PATTERN.fullmatch(number_text.strip())
     if not match:
-        raise ValueError(f"{flag} = {text!r} is not a number; {example}")
+        raise ValueError(f"{flag} = {number_text!r} is not a number; {example}")
     number, stated_unit = float(match[1]), match[2]
     try:
         value = number * _unit_size(quantity, stated_unit or unit)
     except ValueError as error:
         others = ", ".join(quantity.extra_units)
         raise ValueError(
-            f"{flag} = {text!r}: {error}; {example}{f', or in {others}' if others else ''}"
+            f"{flag} = {number_text!r}: {error}; {example}{f', or in {others}' if others else ''}"
         ) from None
     magnitude = value / _unit_size(quantity, quantity.unit)
     low, high = quantity.plausible_range
@@ -314,16 +319,16 @@ def _parse_value(option: str, text: str, default_unit: str | None) -> float:
     ):
         interval = f"are {low:g} to {high:g}" if high < math.inf else f"is at least {low:g}"
         raise ValueError(
-            f"{flag} = {text!r} is read as {magnitude:g} {quantity.unit}, plausible {interval} "
+            f"{flag} = {number_text!r} is read as {magnitude:g} {quantity.unit}, plausible {interval} "
             f"{quantity.unit}; {advice}"
         )
-    _check_limits(option, text, magnitude)
+    _check_limits(option_name, number_text, magnitude)
     return value
 
 
-def _check_limits(option: str, text: str, magnitude: float) -> None:
+def _check_limits(option_name: str, number_text: str, magnitude: float) -> None:
     """Raise ValueError if a number, in the unit of its option, is outside the limits of its quantity."""
-    quantity = QUANTITIES[option]
+    quantity = QUANTITIES[option_name]
     low, high = quantity.limits
     if quantity.has_sign:
         inside, lower = abs(magnitude) <= high, f"[{-high:g}" if high < math.inf else "(-inf"
@@ -336,7 +341,7 @@ def _check_limits(option: str, text: str, magnitude: float) -> None:
     interval = f"{lower}, {high:g}]" if high < math.inf else f"{lower}, inf)"
     unit = "" if quantity.unit == "1" else f" {quantity.unit}"
     raise ValueError(
-        f"{format_option_flag(option)} = {text!r} is outside {interval}{unit}: {quantity.meaning}"
+        f"{format_option_flag(option_name)} = {number_text!r} is outside {interval}{unit}: {quantity.meaning}"
     )
 
 

@@ -18,7 +18,7 @@ _THOUSANDS_PATTERN = re.compile(r"[+-]?\d{1,3}(?:,\d{3})+(.*)")
 """Pattern of a number with commas between thousands."""
 
 
-def check_separators(option: str, number_text: str) -> None:
+def check_separators(option_name: str, number_text: str) -> None:
     """Raise ValueError for a number with a comma, decimal or of thousands; the message says what to write."""
     text = number_text.strip()
     if not _COMMA_PATTERN.fullmatch(text):
@@ -27,39 +27,39 @@ def check_separators(option: str, number_text: str) -> None:
     advice = f"{point} with a decimal point" if text.count(",") == 1 else joined
     if _THOUSANDS_PATTERN.fullmatch(text) and text.count(",") == 1:
         advice += f", or {joined} if the comma separates thousands"
-    raise ValueError(f"{format_option_flag(option)} = {number_text!r} has a comma; write {advice}")
+    raise ValueError(f"{format_option_flag(option_name)} = {number_text!r} has a comma; write {advice}")
 
 
 def parse_number(
-    option: str, number_text: str, unit: str, target_unit: str, lower_bound: float | None = 0.0
+    option_name: str, number_text: str, unit: str, target_unit: str, lower_bound: float | None = 0.0
 ) -> float:
     """Parse the number of an option of a drawing, with its own unit or the unit of the option.
 
-    option      : name of the option, for the error
+    option_name : name of the option, for the error
     unit        : unit of a number that is stated without one
     target_unit : unit of the result
     lower_bound : the number must be above it [target_unit]; None: no bound
 
     Raises ValueError for text that is not a number, a wrong unit, an infinite number, or one out of range.
     """
-    check_separators(option, number_text)
+    check_separators(option_name, number_text)
     match = NUMBER_PATTERN.fullmatch(number_text.strip())
     example = f"expected a number in {unit}, or with its unit as in 1{unit}"
     if unit == "1":
         example = "expected a number without a unit"
     if not match:
-        raise ValueError(f"{format_option_flag(option)} = {number_text!r} is not a number; {example}")
+        raise ValueError(f"{format_option_flag(option_name)} = {number_text!r} is not a number; {example}")
     try:
         value = float(match[1]) * conversion_factor(match[2] or unit, target_unit)
     except ValueError as error:
-        raise ValueError(f"{format_option_flag(option)} = {number_text!r}: {error}; {example}") from None
+        raise ValueError(f"{format_option_flag(option_name)} = {number_text!r}: {error}; {example}") from None
     if not math.isfinite(value) or (lower_bound is not None and not value > lower_bound):
         low = "-inf" if lower_bound is None else f"{lower_bound:g}"
-        raise ValueError(f"{format_option_flag(option)} = {number_text!r} is outside ({low}, inf)")
+        raise ValueError(f"{format_option_flag(option_name)} = {number_text!r} is outside ({low}, inf)")
     return value
 
 
-def parse_temperature(option: str, temperature_text: str) -> float:
+def parse_temperature(option_name: str, temperature_text: str) -> float:
     """Parse the temperature [K] of an option, stated in degC or with the unit K.
 
     Raises ValueError for text that is not a temperature, or outside LUBRICANT_TEMPERATURES.
@@ -67,8 +67,8 @@ def parse_temperature(option: str, temperature_text: str) -> float:
     match = _TEMPERATURE_PATTERN.fullmatch(temperature_text.strip())
     if not match:
         raise ValueError(
-            f"{format_option_flag(option)} = {temperature_text!r} is not a temperature; expected 45, 45degC "
-            "or 318.15K"
+            f"{format_option_flag(option_name)} = {temperature_text!r} is not a temperature; "
+            "expected 45, 45degC or 318.15K"
         )
     kelvin = float(match[1]) + (0.0 if match[2] == "K" else CELSIUS_ZERO_IN_KELVIN)
     low, high = LUBRICANT_TEMPERATURES
@@ -77,7 +77,7 @@ def parse_temperature(option: str, temperature_text: str) -> float:
         if not match[2] and low <= float(match[1]) <= high:
             advice = f"; if it is in K, write {match[1]}K"
         raise ValueError(
-            f"{format_option_flag(option)} = {temperature_text!r} is read as "
+            f"{format_option_flag(option_name)} = {temperature_text!r} is read as "
             f"{kelvin - CELSIUS_ZERO_IN_KELVIN:g} degC, outside [{low - CELSIUS_ZERO_IN_KELVIN:g}, "
             f"{high - CELSIUS_ZERO_IN_KELVIN:g}] degC{advice}"
         )
@@ -85,32 +85,32 @@ def parse_temperature(option: str, temperature_text: str) -> float:
 
 
 def parse_numbers(
-    option: str,
+    option_name: str,
     numbers_text: str,
     unit: str,
     target_unit: str,
     *,
     separator: str,
-    count: int,
+    number_count: int,
     lower_bound: float | None = 0.0,
 ) -> list[float]:
     """Parse several numbers of an option with a separator between them: 200x100.
 
-    count : how many numbers there must be
+    number_count : how many numbers there must be
 
     Raises ValueError for another count, and as `parse_number`.
     """
     words = numbers_text.split(separator)
-    if len(words) != count:
-        example = separator.join(["200", "100"][:count])
+    if len(words) != number_count:
+        example = separator.join(["200", "100"][:number_count])
         raise ValueError(
-            f"{format_option_flag(option)} = {numbers_text!r} has {len(words)} numbers, expected {count}, as "
-            f"in {example}"
+            f"{format_option_flag(option_name)} = {numbers_text!r} has {len(words)} numbers, "
+            f"expected {number_count}, as in {example}"
         )
-    return [parse_number(option, word, unit, target_unit, lower_bound) for word in words]
+    return [parse_number(option_name, word, unit, target_unit, lower_bound) for word in words]
 
 
-def expand_to_sides(option: str, texts: Sequence[str] | None) -> tuple[str, str] | None:
+def expand_to_sides(option_name: str, texts: Sequence[str] | None) -> tuple[str, str] | None:
     """Expand one or two texts of an option to a text for each of the two sides; None if there is none.
 
     Raises ValueError for more than two texts.
@@ -119,7 +119,7 @@ def expand_to_sides(option: str, texts: Sequence[str] | None) -> tuple[str, str]
         return None
     if len(texts) > 2:
         raise ValueError(
-            f"{format_option_flag(option)} has {len(texts)} values, state one for both sides, or one "
+            f"{format_option_flag(option_name)} has {len(texts)} values, state one for both sides, or one "
             "for each side"
         )
     return texts[0], texts[-1]

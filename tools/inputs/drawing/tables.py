@@ -77,9 +77,9 @@ def find_row(table_name: str, row_name: str) -> TableRow:
     )
 
 
-def _normalise_name(text: str) -> str:
+def _normalise_name(name: str) -> str:
     """Name of a material or finish without case and hyphens, for comparisons."""
-    return text.lower().replace("-", " ").strip()
+    return name.lower().replace("-", " ").strip()
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,12 +173,12 @@ class TighteningMethod:
     """Method of tightening a bolt, with the scatter of its preload.
 
     title               : name of the method in words
-    factor              : least and greatest tightening factor alpha_A = F_Mmax/F_Mmin [1]
+    tightening_factors  : least and greatest tightening factor alpha_A = F_Mmax/F_Mmin [1]
     depends_on_friction : whether the preload depends on the friction in thread and head
     """
 
     title: str
-    factor: tuple[float, float]
+    tightening_factors: tuple[float, float]
     depends_on_friction: bool
 
 
@@ -192,9 +192,9 @@ def read_tightening_methods() -> dict[str, TighteningMethod]:
     }
 
 
-def thread_source(column: str) -> str:
+def thread_source(bolt_column: str) -> str:
     """Source text of a column in the table of bolts."""
-    return str(_read_document("bolts")[1]["columns"][column]["source"])
+    return str(_read_document("bolts")[1]["columns"][bolt_column]["source"])
 
 
 @cache

@@ -241,7 +241,7 @@ STRONGEST_PROPERTY_CLASS = "12.9"
 
 
 def describe_stated_bolt(thread_name: str, property_class: str) -> str:
-    """Text on the bolt that the user states, as part of the source of the preload; `proof_load` reads it."""
+    """Describe the bolt that the user states, for the source of the preload; `proof_load` reads this text."""
     return f"bolts {thread_name}-{property_class} as stated"
 
 

@@ -150,13 +150,13 @@ def _read_values(paths: Sequence[Path]) -> tuple[NodalValues, bool]:
     return NodalValues(values.pressure, values.area, coordinates | values.position), left_out
 
 
-def _read_report_rows(path: Path, lines: list[str]) -> Iterator[ListingRow]:
-    """Rows of the nodal tables of an Abaqus field report; tables by element are ignored."""
+def _read_report_rows(path: Path, file_lines: list[str]) -> Iterator[ListingRow]:
+    """Read the rows of the nodal tables of an Abaqus field report; tables by element are ignored."""
     step = frame = instance = ""
     head: list[str] | None = None  # lines between the name of the part and the rows
     columns: list[str] = []
     words: list[str] = []  # words of a row that continues in the next line
-    for number, line in enumerate(lines, 1):
+    for number, line in enumerate(file_lines, 1):
         text, location = line.strip(), f"{path}: line {number}"
         if text.startswith("Step:"):
             step = text
@@ -216,18 +216,18 @@ def _parse_row(
     file_and_line: str,
     step_and_increment: str,
     part_instance: str,
-    columns: Sequence[str],
+    column_names: Sequence[str],
     row_words: Sequence[str],
 ) -> ListingRow:
     """Parse one row of a listing: a node and a number for each column; ValueError for any other line."""
-    numbers = row_words[-len(columns) :]
+    numbers = row_words[-len(column_names) :]
     if (
         not row_words[0].isdigit()
-        or len(row_words) != len(columns) + 1
+        or len(row_words) != len(column_names) + 1
         or not all(map(NUMBER_PATTERN.fullmatch, numbers))
     ):
         raise ValueError(
-            f"{file_and_line}: {' '.join(row_words)!r} is not a row with a node and {' '.join(columns)}"
+            f"{file_and_line}: {' '.join(row_words)!r} is not a row with a node and {' '.join(column_names)}"
         )
     values = [float(word.upper().replace("D", "E")) for word in numbers]
     return ListingRow(
@@ -235,15 +235,15 @@ def _parse_row(
         step_and_increment,
         part_instance,
         int(row_words[0]),
-        dict(zip(columns, values, strict=True)),
+        dict(zip(column_names, values, strict=True)),
     )
 
 
-def _read_data_file_rows(path: Path, lines: list[str]) -> Iterator[ListingRow]:
-    """Rows of the nodal tables of an Abaqus data file."""
+def _read_data_file_rows(path: Path, file_lines: list[str]) -> Iterator[ListingRow]:
+    """Read the rows of the nodal tables of an Abaqus data file."""
     step = increment = ""
     columns: list[str] = []
-    for number, line in enumerate(lines, 1):
+    for number, line in enumerate(file_lines, 1):
         words = line.split()
         if not words:
             continue

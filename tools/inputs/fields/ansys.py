@@ -115,7 +115,7 @@ def _build_nodal_result(
 
 
 def _read_listing_rows(path: Path) -> Iterator[tuple[str, str, list[float]]]:
-    """All rows of a listing as (file and line, content, numbers).
+    """Read all rows of a listing as (file and line, content, numbers).
 
     The content is "pressure", "place" (coordinates), "element", or "more" (more nodes of an element).
     """
@@ -257,7 +257,7 @@ def _open_archive(path: Path) -> Any:
 
 
 def _convert_element(node_numbers: list[int], is_contact: bool) -> tuple[str, list[int]]:
-    """Cell type of meshio and nodes of an ANSYS element without repeated nodes; empty if not supported."""
+    """Convert an ANSYS element to a meshio cell type and nodes without repeats; empty if not supported."""
     if is_contact:
         return _convert_face([node for node in node_numbers if node])
     if len(node_numbers) in _TETRA_CELLS:
@@ -280,7 +280,7 @@ def _brick_shape(node_numbers: list[int]) -> str:
 
 
 def _convert_face(node_numbers: list[int]) -> tuple[str, list[int]]:
-    """Cell type of meshio and nodes of a contact element I J K L (M N O P); a triangle if K equals L."""
+    """Convert a contact element I J K L (M N O P) to a meshio cell type and nodes; triangle if K is L."""
     if len(node_numbers) in (4, 8) and node_numbers[2] == node_numbers[3]:
         node_numbers = [
             node_numbers[i] for i in ((0, 1, 2) if len(node_numbers) == 4 else (0, 1, 2, 4, 5, 7))

@@ -44,7 +44,7 @@ class BoltedInterface(InterfaceLaw, Protocol):
 
 
 def check_pressure_field(joint: str) -> None:
-    """Raise ValueError if the pressure of a joint cannot be given by a field."""
+    """Raise ValueError if a kind of joint has no parameters for a pressure field."""
     if joint != KIND.name:
         raise ValueError(f"joint = {joint!r} has no pressure field; expected {KIND.name!r}")
 

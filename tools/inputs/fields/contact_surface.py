@@ -79,11 +79,11 @@ class ContactSurface:
     pressure: Array
 
     def describe_node(self, contact_node: int) -> str:
-        """File and number of a contact node, for messages."""
+        """Name a contact node in a message: file and node number."""
         return self.source_result.describe_node(int(self.node_indices[contact_node]))
 
     def select_pressure_field(self, node_mask: NDArray[np.bool_]) -> ContactField:
-        """Pressure field of the selected nodes, from a mask (n)."""
+        """Select nodes by a mask (n), and return the pressure field of these nodes."""
         return ContactField(self.area[node_mask], self.position[node_mask], self.pressure[node_mask])
 
 
@@ -194,7 +194,7 @@ def _body_of_node(nodal_result: NodalResult) -> NDArray[np.int64]:
 def _select_bodies(
     nodal_result: NodalResult, loaded_nodes: NodeIndices, node_height: Array, contact_plane: ContactPlane
 ) -> list[int]:
-    """Numbers of the bodies with pressure; only the bodies on `body_side` of the plane if a side is stated.
+    """Select the bodies with pressure by number; only those on `body_side` of the plane if a side is stated.
 
     A body lies above the plane if the mean height of its nodes is positive.
     """

@@ -57,31 +57,31 @@ def _read_text(path: Path) -> str:
     return data.decode("latin-1")
 
 
-def _block_lines(lines: list[str], start_line: int) -> Iterator[tuple[int, str]]:
+def _block_lines(file_lines: list[str], start_line: int) -> Iterator[tuple[int, str]]:
     """Lines of a block of an .frd file, as (line number, line), up to the end of the block."""
-    for number in range(start_line + 1, len(lines)):
-        if lines[number].startswith(" -3"):
+    for number in range(start_line + 1, len(file_lines)):
+        if file_lines[number].startswith(" -3"):
             return
-        yield number, lines[number]
+        yield number, file_lines[number]
 
 
-def _find_block(path: Path, lines: list[str], block_key: str, block_description: str) -> int:
+def _find_block(path: Path, file_lines: list[str], block_key: str, block_description: str) -> int:
     """Line number of the last block of an .frd file with a key; ValueError if there is none or it is binary.
 
     block_description : name of the content in the message
     """
-    starts = [i for i, line in enumerate(lines) if line.startswith(block_key)]
+    starts = [i for i, line in enumerate(file_lines) if line.startswith(block_key)]
     if not starts:
         raise ValueError(f"{path}: has no {block_description}, expected a block {block_key.strip()}")
-    if lines[starts[-1]].rstrip().endswith(("2", "3")):
+    if file_lines[starts[-1]].rstrip().endswith(("2", "3")):
         raise ValueError(f"{path}: line {starts[-1] + 1}: is binary, expected an ASCII .frd file")
     return starts[-1]
 
 
-def _read_nodes(path: Path, lines: list[str]) -> tuple[NDArray[np.int64], Array]:
+def _read_nodes(path: Path, file_lines: list[str]) -> tuple[NDArray[np.int64], Array]:
     """Read node numbers (n) and coordinates (n, 3), in the unit of the file, from an .frd file."""
     names, coordinates = [], []
-    for number, line in _block_lines(lines, _find_block(path, lines, "    2C", "nodes")):
+    for number, line in _block_lines(file_lines, _find_block(path, file_lines, "    2C", "nodes")):
         name, values = _parse_row(path, number, line, 3)
         names.append(name)
         coordinates.append(values)
@@ -105,11 +105,11 @@ def _parse_row(path: Path, line_index: int, line: str, min_value_count: int) -> 
     return name, values
 
 
-def _read_cells(path: Path, lines: list[str]) -> dict[str, list[list[int]]]:
+def _read_cells(path: Path, file_lines: list[str]) -> dict[str, list[list[int]]]:
     """Read the elements of an .frd file: {cell type of meshio: node numbers of each cell}."""
     cells: dict[str, list[list[int]]] = {}
     kind, nodes = "", list[int]()
-    for number, line in _block_lines(lines, _find_block(path, lines, "    3C", "elements")):
+    for number, line in _block_lines(file_lines, _find_block(path, file_lines, "    3C", "elements")):
         try:
             if line.startswith(" -1"):
                 kind, nodes = CELL_TYPES[int(line[13:18])], []
@@ -126,25 +126,25 @@ def _read_cells(path: Path, lines: list[str]) -> dict[str, list[list[int]]]:
     return cells
 
 
-def _read_pressures(path: Path, lines: list[str]) -> Iterator[tuple[int, float]]:
-    """Node numbers and contact pressures of the last contact result of an .frd file.
+def _read_pressures(path: Path, file_lines: list[str]) -> Iterator[tuple[int, float]]:
+    """Read the node numbers and contact pressures of the last contact result of an .frd file.
 
     With surface-to-surface contact, CalculiX lists 0 for all other nodes. With node-to-surface contact, it
     leaves out nodes whose gap is too large for a contact spring.
     """
     starts = [
         i
-        for i, line in enumerate(lines)
+        for i, line in enumerate(file_lines)
         if line.startswith(" -4") and line[5:13].strip() == CONTACT_RESULT_NAME
     ]
     if not starts:
-        available = sorted({line[5:13].strip() for line in lines if line.startswith(" -4")})
+        available = sorted({line[5:13].strip() for line in file_lines if line.startswith(" -4")})
         raise ValueError(
             f"{path}: has no result {CONTACT_RESULT_NAME} (*CONTACT FILE with CSTR); "
             f"there are {', '.join(available) or 'none'}"
         )
     names: list[str] = []
-    for number, line in _block_lines(lines, starts[-1]):
+    for number, line in _block_lines(file_lines, starts[-1]):
         if line.startswith(" -5"):
             names.append(line[5:13].strip())
             continue

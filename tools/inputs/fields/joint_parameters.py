@@ -112,7 +112,7 @@ def insert_field(
 
 
 def _describe_moment_rule(moment_field: ContactField | None, moment: float | None) -> str:
-    """Text on how the pressure changes with a moment, for the source of the entry `field.tilt`."""
+    """Describe how the pressure changes with a moment, for the source of the entry `field.tilt`."""
     if moment_field is None:
         return "in proportion to the distance from the centre of pressure"
     return f"from the field at {moment:g} N.m"

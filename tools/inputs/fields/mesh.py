@@ -239,7 +239,7 @@ class FiniteElementMesh:
 
 
 def select_faces_with_values(faces: Sequence[NodeIndices], nodal_values: Array) -> list[NodeIndices]:
-    """Faces whose corners all have a value, from nodal values (n) with NaN for none."""
+    """Select the faces whose corners all have a value, from nodal values (n) with NaN for none."""
     has_value = np.isfinite(nodal_values)
     selected = [
         block[np.all(has_value[block[:, : FACE_CORNER_COUNTS[block.shape[1]]]], axis=1)] for block in faces

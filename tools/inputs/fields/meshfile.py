@@ -88,7 +88,7 @@ def _read_meshio(path: Path) -> Any:
 
 
 def _select_values(path: Path, point_data: dict[str, Any], point_data_name: str | None) -> Array:
-    """Nodal values (n) of the point data, or of one of their components, that a name selects."""
+    """Select nodal values (n) by name: an array of the point data, or one of its components."""
     arrays = {name: np.asarray(value) for name, value in point_data.items()}
     listed = [f"{n} ({v.shape[1]} components)" if v.ndim > 1 else n for n, v in arrays.items()]
     available = ", ".join(listed) or "none"

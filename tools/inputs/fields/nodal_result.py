@@ -90,7 +90,7 @@ class NodalResult:
     omits_open_nodes: bool = False
 
     def describe_node(self, node_index: int) -> str:
-        """File and number of the node with an index, for messages."""
+        """Name the node with an index in a message: file and node number."""
         return f"{self.path}: {self.node_label} {self.node_numbers[node_index]}"
 
 

@@ -233,17 +233,17 @@ def _deviation_above_tested_moments(
     sum_functions: SumFunctions,
     normalised_pressure: PressureDistribution,
     reduced_points: PressureDistribution,
-    moment_ratio_limit: float,
+    min_over_max_moment: float,
 ) -> float:
     """Largest deviation [1] of the sums of reduced points at moments above the tested ones.
 
     The moments go up to the moment at which a row of bolts loses its force.
 
-    moment_ratio_limit : smallest of these moments over the largest one [1]
+    min_over_max_moment : smallest of these moments over the largest one [1]
     """
-    if moment_ratio_limit >= 1.0:
+    if min_over_max_moment >= 1.0:
         return 0.0
-    moments = np.linspace(moment_ratio_limit, 1.0, 6)[1:].tolist()
+    moments = np.linspace(min_over_max_moment, 1.0, 6)[1:].tolist()
     loads = [
         LoadCase(p, sign * m, 0.0)
         for p in CASE_OVER_FIELD_PRELOAD_RANGE

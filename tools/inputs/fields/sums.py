@@ -56,14 +56,17 @@ def max_moment_ratio(joint: BoltedInterface, normalised_pressure: PressureDistri
     return float(min(opening_moment[order][np.searchsorted(opened_force, MAX_OPENED_PRELOAD_SHARE)], 1.0))
 
 
-def initial_load_cases(moment_ratio_limit: float) -> list[LoadCase]:
+def initial_load_cases(max_moment_over_unloading_moment: float) -> list[LoadCase]:
     """Load cases at the start of a reduction.
 
     The search adds further load cases in which the selected nodes miss the tolerance.
-    moment_ratio_limit : largest moment over the moment that unloads a row of bolts [1]
+    max_moment_over_unloading_moment : largest moment over the moment that unloads a row of bolts [1]
     """
-    moments = [moment_ratio_limit * m for m in (-1.0, -0.97, -0.9, -0.8, -0.5, 0.0, 0.5, 0.8, 0.9, 0.97, 1.0)]
-    extremes = (-1.0, 1.0) if moment_ratio_limit < 1.0 else ()
+    moments = [
+        max_moment_over_unloading_moment * m
+        for m in (-1.0, -0.97, -0.9, -0.8, -0.5, 0.0, 0.5, 0.8, 0.9, 0.97, 1.0)
+    ]
+    extremes = (-1.0, 1.0) if max_moment_over_unloading_moment < 1.0 else ()
     preloaded = [LoadCase(p, m, 0.0) for p in CASE_OVER_FIELD_PRELOAD_RANGE for m in (*moments, *extremes)]
     openings = (
         -MAX_COMPRESSION_OVER_OPENING_MOTION,
@@ -80,7 +83,7 @@ def initial_load_cases(moment_ratio_limit: float) -> list[LoadCase]:
         LoadCase(p, m, s) for p in CASE_OVER_FIELD_PRELOAD_RANGE for m in moments[::2] for s in openings
     ]
     steep = [
-        moment_ratio_limit * m for m in (-0.95, -0.85, -0.7, 0.7, 0.85, 0.95)
+        max_moment_over_unloading_moment * m for m in (-0.95, -0.85, -0.7, 0.7, 0.85, 0.95)
     ]  # nodes open row by row there
     return (
         preloaded
@@ -89,7 +92,7 @@ def initial_load_cases(moment_ratio_limit: float) -> list[LoadCase]:
     )
 
 
-def random_load_cases(moment_ratio_limit: float) -> Iterator[LoadCase]:
+def random_load_cases(max_moment_over_unloading_moment: float) -> Iterator[LoadCase]:
     """Endless quasi-random load cases (Halton sequence), every third one without normal motion."""
     from scipy.stats import qmc  # imported here: its import is slow
 
@@ -103,7 +106,9 @@ def random_load_cases(moment_ratio_limit: float) -> Iterator[LoadCase]:
             else 0.0
         )
         yield LoadCase(
-            float(np.exp(low + a * (high - low))), float(moment_ratio_limit * (2.0 * b - 1.0)), float(opening)
+            float(np.exp(low + a * (high - low))),
+            float(max_moment_over_unloading_moment * (2.0 * b - 1.0)),
+            float(opening),
         )
 
 
@@ -144,7 +149,7 @@ class LoadCaseSums:
     sum_scales: Array
 
     def select_load_cases(self, selected_cases: NDArray[np.intp] | NDArray[np.bool_]) -> "LoadCaseSums":
-        """Sums in the load cases that a mask or indices select."""
+        """Select the sums of some load cases, by a mask or by indices."""
         loads = tuple(self.load_cases[i] for i in np.arange(len(self.load_cases))[selected_cases])
         return LoadCaseSums(
             loads,
@@ -259,17 +264,17 @@ class SumFunctions:
         return LoadCaseSums(tuple(load_cases), opening, groups, total / scale, scale)
 
     def sample_probability(
-        self, normalised_pressure: PressureDistribution, moment_ratio_limit: float
+        self, normalised_pressure: PressureDistribution, max_moment_over_unloading_moment: float
     ) -> Array:
         """Probability (n) of each node to be in the sample: its mean share of the sums over load cases.
 
         When the joint is nearly open, few nodes carry the load: the sample needs more of them than their area
         share.
 
-        moment_ratio_limit : largest moment over the moment that unloads a row of bolts [1]
+        max_moment_over_unloading_moment : largest moment over the moment that unloads a row of bolts [1]
         """
         loads = [
-            LoadCase(p, m * moment_ratio_limit, 0.0)
+            LoadCase(p, m * max_moment_over_unloading_moment, 0.0)
             for p in CASE_OVER_FIELD_PRELOAD_RANGE
             for m in (-1.0, 0.0, 1.0)
         ]

@@ -30,7 +30,7 @@ from .branches import find_reversals
 
 MIN_REVERSAL_OVER_TORQUE_RANGE = 0.1
 """Smallest reversal of the torque that counts as a turning point, over the range of the torque [1]."""
-CENTRAL_TORQUE_RANGE_FRACTION = 0.25
+CENTRAL_OVER_WHOLE_TORQUE_RANGE = 0.25
 """Central fraction of the torque range [1], in which friction is fully reversed on both branches."""
 MIN_BRANCH_OVER_RECORD_TORQUE_RANGE = 0.9
 """Torque range of a branch over that of the record [1], from which the branch covers the full range."""
@@ -163,7 +163,7 @@ def _separate_hysteresis(
     gap_values = slice(knots, knots + int(np.sum(open_gap)))
 
     def weighted_gap(knot_weights: Array) -> tuple[float, float]:
-        """Weighted sum of the half gaps between the branches at the knots, and its standard deviation."""
+        """Weighted sum of half the angle gaps [rad] of both branches at the knots; its standard deviation."""
         row = knot_weights[open_gap]
         return float(row @ values[gap_values]), float(np.sqrt(row @ covariance[gap_values, gap_values] @ row))
 
@@ -179,7 +179,7 @@ def _separate_hysteresis(
     position = (T - 0.5 * (min_torque + max_torque)) / (
         0.5 * (max_torque - min_torque)
     )  # in the range of the torque, from -1 to 1
-    central = np.abs(position) <= CENTRAL_TORQUE_RANGE_FRACTION
+    central = np.abs(position) <= CENTRAL_OVER_WHOLE_TORQUE_RANGE
     friction = _fit_friction_torque(T[central], driftless[central], direction[central])
     loading = direction * position >= 0.0
     line = _average_groups((T - friction * direction)[loading], driftless[loading])
@@ -187,7 +187,7 @@ def _separate_hysteresis(
 
 
 def _fit_friction_torque(torque: Array, angle: Array, direction: Array) -> float:
-    """Friction torque [N.m]: half the torque difference of rising and falling branches at equal angles.
+    """Fit the friction torque [N.m]: half the torque difference of both branches at equal angles.
 
     direction : +1 (rising) or -1 (falling) for each sample (n)
 

@@ -32,26 +32,26 @@ RELATIVE_ROUNDING = 1e-9
 motions over their range."""
 MIN_COMMON_OVER_LONGER_MOTION_RANGE = 0.9
 """Motion range common to two branches over range of the longer branch [1], from which they close a loop."""
-RISING_FORCE_FRACTION = 0.9
+RISING_OVER_BRANCH_FORCE_CHANGE = 0.9
 """Force change since the turning point over change of the whole branch [1], up to which a branch counts as
 rising. Beyond it a slipped branch is flat."""
-FLAT_FRACTION, MAX_FLAT_RISE = 0.3, 0.05
+FLAT_END_OVER_MOTION_RANGE, MAX_FLAT_RISE_OVER_BRANCH_RISE = 0.3, 0.05
 """Last part of a branch over its range of motion [1], and rise of the force over this part, relative to the
 force change of the branch [1], up to which the branch counts as slipping."""
 MIN_FLAT_SAMPLES = 3
 """Minimum number of samples on the flat end of a branch."""
 BEARING_INTERVALS = 12
 """Number of equal parts of a branch that show whether its stiffness rises again."""
-MIN_BEARING_RISE, MIN_BEARING_SLOPE_RATIO = 0.2, 3.0
+MIN_BEARING_RISE_OVER_BRANCH_RISE, MIN_BEARING_OVER_SOFTEST_STIFFNESS = 0.2, 3.0
 """Rise of the force after the softest part over rise of the branch [1], and stiffness there over stiffness
 of the softest part [1], from which a joint bears after slip."""
-MIN_BEARING_NOISE = 8.0
+MIN_STIFFNESS_RISE_OVER_DEVIATION = 8.0
 """Rise of a branch's stiffness over its standard deviation [1], from which a joint bears after slip."""
 MIN_RISING_SAMPLES = 5
 """Number of samples on the rising part of a branch from which its stiffness counts as resolved."""
 _AREA_INTEGRATION_POINTS = 200
 """Number of points of the grid for the area between two branches [1]."""
-_MAX_REST_ITERATIONS, _REST_DIFFERENCE_STEP = 6, 1e-4
+_MAX_REST_ITERATIONS, _REST_DIFFERENCE_STEP_OVER_MOTION_RANGE = 6, 1e-4
 """Gauss-Newton iterations for the rest position, and half the difference step over the motion's range [1]."""
 
 
@@ -118,7 +118,7 @@ class Loops:
         slopes = []
         for k in range(self.start_motion.size):
             distance, change = self.branch_curve(k)
-            rising = int(np.argmax(change >= RISING_FORCE_FRACTION * np.max(change)))
+            rising = int(np.argmax(change >= RISING_OVER_BRANCH_FORCE_CHANGE * np.max(change)))
             if (rising >= MIN_RISING_SAMPLES) is not is_resolved:
                 continue
             if is_resolved:
@@ -143,15 +143,17 @@ class Loops:
     def _flat_samples(self, branch_number: int) -> NDArray[np.bool_]:
         """Mask (n) of the samples of a branch on its flat end; all false if its end is not flat."""
         distance, change = self.branch_curve(branch_number)
-        end = distance >= (1.0 - FLAT_FRACTION) * np.max(distance)
+        end = distance >= (1.0 - FLAT_END_OVER_MOTION_RANGE) * np.max(distance)
         if np.count_nonzero(end) < MIN_FLAT_SAMPLES:
             return np.zeros_like(end)
         slope = float(np.polyfit(distance[end], change[end], 1)[0])
-        is_flat = abs(slope) * FLAT_FRACTION * np.max(distance) < MAX_FLAT_RISE * np.max(change)
+        is_flat = abs(slope) * FLAT_END_OVER_MOTION_RANGE * np.max(
+            distance
+        ) < MAX_FLAT_RISE_OVER_BRANCH_RISE * np.max(change)
         return np.asarray(end & is_flat)
 
     def find_slip_steps(self) -> list["SlipStep"]:
-        """Find the turning points between two branches with flat ends."""
+        """Find the force steps at turning points between two branches that both end in full slip."""
         flat = [
             np.flatnonzero(self.branch_index == k)[self._flat_samples(k)]
             for k in range(self.start_motion.size)
@@ -196,11 +198,13 @@ class Loops:
             later = softest + int(np.argmax(slopes[softest:]))
             noise = noise_deviation(change) * np.sqrt(2.0 / np.min(counts)) / np.min(np.diff(x))
             if (
-                y[-1] - y[softest + 1] > MIN_BEARING_RISE * y[-1]
-                and slopes[later] > MIN_BEARING_SLOPE_RATIO * slopes[softest]
-                and slopes[later] - slopes[softest] > MIN_BEARING_NOISE * noise
+                y[-1] - y[softest + 1] > MIN_BEARING_RISE_OVER_BRANCH_RISE * y[-1]
+                and slopes[later] > MIN_BEARING_OVER_SOFTEST_STIFFNESS * slopes[softest]
+                and slopes[later] - slopes[softest] > MIN_STIFFNESS_RISE_OVER_DEVIATION * noise
             ):
-                limit = slopes[softest] + (slopes[later] - slopes[softest]) / MIN_BEARING_SLOPE_RATIO
+                limit = (
+                    slopes[softest] + (slopes[later] - slopes[softest]) / MIN_BEARING_OVER_SOFTEST_STIFFNESS
+                )
                 return float(np.sum(np.diff(x)[slopes < limit])), float(y[softest + 1])
         return None
 
@@ -256,8 +260,11 @@ class Loops:
         middle = 0.5 * float(np.max(self.motion) + np.min(self.motion))
         position = min((0.0, middle), key=lambda rest: float(np.sum(misfit(rest) ** 2)))
         for _ in range(_MAX_REST_ITERATIONS):
-            high, low = (misfit(position + sign * _REST_DIFFERENCE_STEP * size) for sign in (1.0, -1.0))
-            slope = (high - low) / (2.0 * _REST_DIFFERENCE_STEP)
+            high, low = (
+                misfit(position + sign * _REST_DIFFERENCE_STEP_OVER_MOTION_RANGE * size)
+                for sign in (1.0, -1.0)
+            )
+            slope = (high - low) / (2.0 * _REST_DIFFERENCE_STEP_OVER_MOTION_RANGE)
             step = -float(misfit(position) @ slope) / (float(slope @ slope) + 1.0)
             position += size * float(np.clip(step, -0.5, 0.5))
         return position
@@ -381,7 +388,9 @@ def cut_branches(measured_runs: Sequence[tuple[str, Array, Array]]) -> Loops:
 def _branches_of_run(
     motion: Array, force: Array, branch_ends: Sequence[int]
 ) -> Iterator[tuple[Array, Array, float, float, float]]:
-    """Yield for each branch of a run: motion, force; motion, its standard deviation and force at the start.
+    """Yield, for each branch of a run, its samples and its start.
+
+    Samples: motion and force. Start: motion, standard deviation of this motion, and force.
 
     branch_ends : indices of the turning points, and of the last sample
 
@@ -422,7 +431,7 @@ def find_reversals(signal: Array, prominence: float) -> NDArray[np.int64]:
 
 
 def refine_turning_point(motion: Array, sample_index: int, motion_noise: float) -> float:
-    """Motion at the turning point at sample `sample_index`: vertex of a parabola through the nearest samples.
+    """Refine the motion at a turning point: vertex of a parabola through the samples next to `sample_index`.
 
     motion_noise : standard deviation of the noise of the motion
 
@@ -469,7 +478,7 @@ def _check_work(
     loops = [loop for first, second in pairwise(branches) if (loop := _enclosed_loop(first, second))]
     if not loops:
         if sum((u[-1] - u[0]) * (F[-1] - F[0]) for u, F in branches) < 0.0:
-            raise ValueError(f"{message_prefix}{_SIGN_ERROR}")
+            raise ValueError(f"{message_prefix}{_FALLING_FORCE_TEXT}")
         return []
     area, size = float(np.mean([loop.area for loop in loops])), max(loop.motion_range for loop in loops)
     rise = float(np.mean([loop.mean_rise for loop in loops]))
@@ -479,7 +488,7 @@ def _check_work(
     noise = np.hypot(noise_deviation(force), slope * noise_deviation(motion))
     deviation = noise * size * np.sqrt(2.0 / samples)
     if rise < -abs(area) / size:
-        raise ValueError(f"{message_prefix}{_SIGN_ERROR}")
+        raise ValueError(f"{message_prefix}{_FALLING_FORCE_TEXT}")
     if area < -max(
         MAX_CREATED_ENERGY_OVER_AREA_DEVIATION * deviation, RELATIVE_ROUNDING * size * float(np.ptp(force))
     ):
@@ -497,7 +506,7 @@ def _check_work(
     return [(widest.area, widest.motion_range)]
 
 
-_SIGN_ERROR = "the force decreases as the motion increases; reverse the sign of one column"
+_FALLING_FORCE_TEXT = "the force decreases as the motion increases; reverse the sign of one column"
 """Error of loops in which the force falls with the motion."""
 
 
@@ -543,7 +552,7 @@ def _enclosed_loop(
     )
 
 
-def sort_points(x: Array, y: Array) -> tuple[Array, Array]:
+def sort_points(x_values: Array, y_values: Array) -> tuple[Array, Array]:
     """Sort points (n) with coordinates x, y by x, ascending."""
-    order = np.argsort(x, kind="stable")
-    return x[order], y[order]
+    order = np.argsort(x_values, kind="stable")
+    return x_values[order], y_values[order]

@@ -32,7 +32,7 @@ MIN_SIGNAL_TO_NOISE = 4.0
 FREQUENCY_ERROR_FACTOR, DAMPING_ERROR_FACTOR = 8e-3, 1e-1
 """Relative error of frequency and of damping in a window without noise, over the square of the logarithmic
 decrement over the window [1]. Source: simulated decays of known laws."""
-RECORD_END_FRACTION = 0.2
+END_OVER_RECORD_LENGTH = 0.2
 """Last fraction of a record [1]: if the motion is largest there, the record is no decay."""
 
 
@@ -72,7 +72,7 @@ def analyse_decay(time: Array, motion: Array, message_prefix: str = "") -> Decay
             f"{MIN_SAMPLES_PER_PERIOD} are needed"
         )
     largest = time[int(np.argmax(np.abs(motion - np.median(motion))))]
-    if largest > time[-1] - RECORD_END_FRACTION * (time[-1] - time[0]):
+    if largest > time[-1] - END_OVER_RECORD_LENGTH * (time[-1] - time[0]):
         raise ValueError(
             f"{message_prefix}the motion is largest at {largest:.3g} s, near its end: a joint cannot create "
             "energy; expected a decay; reverse the order of the rows if their time order is reversed"

@@ -70,7 +70,7 @@ class MeasurementModel:
         return measured_data.residuals(self.make_oscillator(law, parameter_values), residual_scale)
 
     def make_oscillator(self, law: HysteresisLaw, parameter_values: Mapping[str, float]) -> Oscillator:
-        """Oscillator (mass on the joint) with a hysteresis law.
+        """Make the oscillator (mass on the joint) with a hysteresis law.
 
         The damping ratio of the structure may be an unknown in `parameter_values`.
         """
@@ -137,7 +137,7 @@ def fit_measurement(
         return lambda values: model.residuals(data, values, residual_scale)
 
     def apply_exchange(residual_function: Residuals) -> Residuals:
-        """Residual function with the stiffness at rest in place of the exchanged unknown."""
+        """Make the residual function in which the stiffness at rest replaces the exchanged unknown."""
         if exchange is None:
             return residual_function
         current, start = exchange, original[exchange.exchanged_name].start_value
@@ -257,7 +257,7 @@ def make_plots(
     parameter_values: Mapping[str, float],
     residual_scale: Array,
 ) -> Sequence[FitPlot]:
-    """Plots of data and fitted law, by the kind of the measurement.
+    """Make the plots of data and fitted law, by the kind of the measurement.
 
     Loops: force over motion. Forced vibration: amplitude over frequency. Free vibration: frequency over
     amplitude, and damping ratio over amplitude.
@@ -275,7 +275,7 @@ def make_plots(
 def _make_loops_plot(
     measurement: Measurement, loops: Loops, law: HysteresisLaw, residual_scale: Array
 ) -> FitPlot:
-    """Plot of measured loops: force over motion."""
+    """Make the plot of measured loops: force over motion."""
     (force_unit, force_scale), (motion_unit, motion_scale) = (
         choose_unit(unit, values)
         for unit, values in zip(measurement.column_names.si_units, (loops.force, loops.motion), strict=True)
@@ -292,8 +292,8 @@ def _make_loops_plot(
     line = np.concatenate(lines, axis=1)
     names = measurement.column_names
     return FitPlot(
-        data_x=motion_scale * loops.motion,
-        data_y=force_scale * loops.force,
+        measured_x=motion_scale * loops.motion,
+        measured_y=force_scale * loops.force,
         misfit=force_scale * misfit,
         law_curve=(motion_scale * line[0], force_scale * line[1]),
         axis_labels=(
@@ -324,8 +324,8 @@ def _make_response_plot(
         lines.append(np.append(np.stack([f, amplitude]), [[np.nan], [np.nan]], axis=1))
     line = np.concatenate(lines, axis=1)
     return FitPlot(
-        data_x=forced_response.frequency,
-        data_y=size * forced_response.amplitude,
+        measured_x=forced_response.frequency,
+        measured_y=size * forced_response.amplitude,
         misfit=100.0 * np.expm1(forced_response.misfit(joint_oscillator)),
         law_curve=(line[0], size * line[1]),
         axis_labels=(
@@ -339,7 +339,7 @@ def _make_response_plot(
 def _make_decay_plots(
     measurement: Measurement, free_vibration: FreeVibration, joint_oscillator: Oscillator
 ) -> tuple[FitPlot, FitPlot]:
-    """Plots of a free vibration of a mass on the joint: frequency and damping ratio over amplitude."""
+    """Make plots of a free vibration of a mass on the joint: frequency and damping ratio over amplitude."""
     unit, size = choose_unit(measurement.column_names.si_units[1], free_vibration.decay_points.amplitude)
     a = free_vibration.decay_points.amplitude
     grid = np.linspace(a.min(), a.max(), _CURVE_POINTS)
@@ -350,15 +350,15 @@ def _make_decay_plots(
     x = f"amplitude of the {measurement.column_names.motion_column} [{unit}]"
     return (
         FitPlot(
-            data_x=size * a,
-            data_y=free_vibration.decay_points.frequency,
+            measured_x=size * a,
+            measured_y=free_vibration.decay_points.frequency,
             misfit=100.0 * frequency,
             law_curve=(size * grid, lines[0]),
             axis_labels=(x, "frequency [Hz]", "data / law - 1 [%]"),
         ),
         FitPlot(
-            data_x=size * a,
-            data_y=100.0 * free_vibration.decay_points.damping_ratio,
+            measured_x=size * a,
+            measured_y=100.0 * free_vibration.decay_points.damping_ratio,
             misfit=100.0 * damping,
             law_curve=(size * grid, 100.0 * lines[1]),
             axis_labels=(x, "damping ratio [%]", "data - law [%]"),

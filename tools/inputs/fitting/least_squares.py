@@ -217,7 +217,7 @@ def _root_mean_square(residuals: Array) -> float:
 
 
 class _LogarithmicModel:
-    """Residuals and regularisation as function of the logarithms (k); infinite if the model refuses them."""
+    """Residuals and regularisation as functions of ln(parameters) (k); infinite if the model refuses them."""
 
     def __init__(
         self, unknowns: tuple[Unknown, ...], residuals: Residuals, difference_steps: float | Array

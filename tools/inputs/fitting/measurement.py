@@ -17,7 +17,7 @@ from .branches import Loops, cut_branches
 from .decay import DecayPoints, analyse_decay
 from .hysteresis import ForcedResponse, FreeVibration
 
-MIN_ROWS = 8
+MIN_MEASUREMENT_ROW_COUNT = 8
 """Smallest number of rows of a measurement file [1]."""
 RUN_COLUMN = "run"
 """Column with the number of the run, if a file holds several runs."""
@@ -146,7 +146,7 @@ def read_columns(path: str | Path, column_names: ColumnNames) -> tuple[str, colu
 
     Raises ValueError, one line, for any other set of columns.
     """
-    table = columns.read_columns(path, column_names.column_units, MIN_ROWS, COLUMN_SYNONYMS)
+    table = columns.read_columns(path, column_names.column_units, MIN_MEASUREMENT_ROW_COUNT, COLUMN_SYNONYMS)
     table.require_column(column_names.motion_column, column_names.column_units)
     present = set(table.columns)
     if {"frequency", column_names.force_column} <= present:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 MAX_PARAMETER_DEVIATION = 0.2
 """Standard deviation of the logarithm of a parameter [1], up to which it counts as determined: about 20 %."""
-MAX_INTERVAL_FRACTION = 0.1
+MAX_DEVIATION_OVER_INTERVAL = 0.1
 """Standard deviation over the length of the parameter's interval, both in logarithms [1], up to which a
 parameter counts as determined."""
 MIN_OVER_MAX_EXPONENT = 0.01
@@ -69,7 +69,7 @@ def max_determined_deviation(unknown: Unknown) -> float:
         return MAX_PARAMETER_DEVIATION
     return min(
         MAX_PARAMETER_DEVIATION,
-        MAX_INTERVAL_FRACTION * float(np.log(unknown.upper_bound / unknown.lower_bound)),
+        MAX_DEVIATION_OVER_INTERVAL * float(np.log(unknown.upper_bound / unknown.lower_bound)),
     )
 
 
@@ -134,16 +134,16 @@ MAX_LAW_OVER_CONSTANT_RESIDUAL = 0.95
 class FitPlot:
     """Contents of a plot: data, fitted curve and misfit over one abscissa, in the units of the axis labels.
 
-    data_x, data_y     : data (n)
-    misfit             : data minus law (n)
-    law_curve          : x (m) and y (m) of the fitted law
-    axis_labels        : axis labels of x, y and misfit
-    highlighted_points : mask (n) of the points to be highlighted
-    other_laws         : {name: (x, y)} of the curves of other laws, for comparison
+    measured_x, measured_y : data (n)
+    misfit                 : data minus law (n)
+    law_curve              : x (m) and y (m) of the fitted law
+    axis_labels            : axis labels of x, y and misfit
+    highlighted_points     : mask (n) of the points to be highlighted
+    other_laws             : {name: (x, y)} of the curves of other laws, for comparison
     """
 
-    data_x: Array
-    data_y: Array
+    measured_x: Array
+    measured_y: Array
     misfit: Array
     law_curve: tuple[Array, Array]
     axis_labels: tuple[str, str, str]
@@ -382,7 +382,7 @@ def draw_fit(figure: "Figure", fit_result: FitResult) -> None:
     pictures = fit_result.fit_plots
     all_axes = figure.subplots(2, len(pictures), sharex="col", height_ratios=(2.4, 1.0), squeeze=False)
     for (above, below), picture in zip(all_axes.T, pictures, strict=True):
-        x, y = picture.data_x, picture.data_y
+        x, y = picture.measured_x, picture.measured_y
         above.plot(*picture.law_curve, color=plots.BLUE, label="fitted law")
         for (name, line), color in zip(picture.other_laws.items(), (plots.GREEN, plots.GREY), strict=False):
             above.plot(*line, "--", color=color, lw=1.0, label=name)

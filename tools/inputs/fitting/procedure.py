@@ -41,7 +41,7 @@ class Procedure:
 
 
 def make_lazy_fit(module_name: str) -> "Callable[..., FitResult]":
-    """Function that loads a module when called, and calls the function `fit` of this module."""
+    """Make the function that loads a module when called, and calls the function `fit` of this module."""
 
     def call_fit(*arguments: object, **options: object) -> "FitResult":
         """Load the module, and fit."""

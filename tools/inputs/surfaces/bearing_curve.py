@@ -26,7 +26,7 @@ MIN_SECTION_AREA_SHARE, MAX_SECTION_AREA_SHARE = 1e-3, 0.38
 0.0003 to 0.1 E* h' on Gaussian heights."""
 TYPICAL_SECTION_AREA_SHARE = 0.03
 """Area share of the section [1] at which the upper tail of the heights is compared with Gaussian heights."""
-MAX_GAUSSIAN_TAIL_RATIO = 1.3
+MAX_GAUSSIAN_TAIL_OVER_RMS_HEIGHT = 1.3
 """Largest ratio of the rms height and the height of the tail [1], either way, of Gaussian heights."""
 SCAN_PARTS = 4
 """Number of parts of a scan [1] that must all have non-Gaussian heights: few hills differ by chance."""
@@ -54,10 +54,12 @@ class HeightSample:
         z = self.heights - self.heights.mean()
         return float(np.mean(z**order) / np.mean(z**2) ** (0.5 * order))
 
-    def split(self, count: int) -> list["HeightSample"]:
-        """Samples of equal size, in the order of the points of the scan."""
+    def split(self, sample_count: int) -> list["HeightSample"]:
+        """Split the sample into samples of equal size, in the order of the points of the scan."""
         pairs = zip(
-            np.array_split(self.heights, count), np.array_split(self.squared_slopes, count), strict=True
+            np.array_split(self.heights, sample_count),
+            np.array_split(self.squared_slopes, sample_count),
+            strict=True,
         )
         return [HeightSample(heights, squared_slopes) for heights, squared_slopes in pairs]
 
@@ -68,7 +70,7 @@ def tail_ratio(sample: HeightSample) -> float:
 
 
 def add_surfaces(first: HeightSample, second: HeightSample) -> HeightSample:
-    """Heights of the gap of two statistically independent surfaces, from random pairs of their points."""
+    """Add the heights of two statistically independent surfaces at random pairs of points."""
     rng = np.random.default_rng(0)
     i, j = (rng.integers(sample.heights.size, size=RANDOM_PAIRS) for sample in (first, second))
     return HeightSample(
@@ -85,7 +87,9 @@ def gaussian_mean_excess(share: Array) -> Array:
 
 
 def skewed_tail_ratio(skewness: float) -> float:
-    """Ratio `tail_ratio` [1] of lognormal heights with a given skewness; 1 for a skewness of 0.
+    """Tail height over rms height [1] of lognormal heights with a given skewness, see `tail_ratio`.
+
+    The result is 1 for a skewness of 0.
 
     For a negative skewness the lognormal heights are mirrored: pits below a flat top.
     """
@@ -120,12 +124,12 @@ class BearingCurve:
     slope: Array
 
     @classmethod
-    def of_sample(cls, sample: HeightSample, points: int = 200) -> "BearingCurve":
+    def of_sample(cls, sample: HeightSample, section_count: int = 200) -> "BearingCurve":
         """Bearing curve from the MIN_SECTION_POINTS highest points to three quarters of the surface."""
         order = np.argsort(sample.heights)[::-1]
         z = sample.heights[order]
         first = min(MIN_SECTION_POINTS, z.size // 8)
-        count = np.unique(np.geomspace(first, 0.75 * z.size, points).astype(int))
+        count = np.unique(np.geomspace(first, 0.75 * z.size, section_count).astype(int))
         mean, slope = (np.cumsum(v)[count - 1] / count for v in (z, sample.squared_slopes[order]))
         return cls(count / z.size, mean - z[count - 1], np.sqrt(slope))
 
@@ -170,10 +174,10 @@ class BearingCurve:
         )
         return float(low), float(high)
 
-    def stiffness_table(self, modulus: float, points: int = 16) -> tuple[Array, Array]:
+    def stiffness_table(self, modulus: float, pressure_count: int = 16) -> tuple[Array, Array]:
         """Pressures [Pa] and stiffness [Pa/m] of the law `table`, whose stiffness is not allowed to decrease.
 
         The pressures go up to MAX_SECTION_AREA_SHARE.
         """
-        p = np.geomspace(self.pressure(modulus)[0], self.checked_pressures(modulus)[1], points)
+        p = np.geomspace(self.pressure(modulus)[0], self.checked_pressures(modulus)[1], pressure_count)
         return p, np.maximum.accumulate(self.stiffness(p, modulus))

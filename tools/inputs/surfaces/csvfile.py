@@ -46,12 +46,12 @@ UNIT_LIST = ", ".join(filter(str.isascii, LENGTH_UNITS))
 """List of the allowed length units, for messages."""
 
 
-def parse_unit(text: str, location: str) -> float:
+def parse_unit(unit_name: str, location: str) -> float:
     """Size of a length unit in metres; ValueError, with the location in the file, for an unknown unit."""
     try:
-        return unit_size_in(text, LENGTH_UNITS)
+        return unit_size_in(unit_name, LENGTH_UNITS)
     except ValueError:
-        raise ValueError(f"{location}: unit {text!r} is not one of {UNIT_LIST}") from None
+        raise ValueError(f"{location}: unit {unit_name!r} is not one of {UNIT_LIST}") from None
 
 
 def read_declaration(path: Path) -> str | None:
@@ -87,9 +87,9 @@ def read_declared_file(
     return heights_from_columns(path, table, [factors[name] for name in needed]), units["x"]
 
 
-def _mark_missing_points(table: Array, mark_missing: Callable[[Array], Array]) -> Array:
+def _mark_missing_points(point_columns: Array, mark_missing: Callable[[Array], Array]) -> Array:
     """Columns (n, 2 or 3) of positions and heights, with NaN as height at the missing points."""
-    return np.column_stack([table[:, :-1], mark_missing(table[:, -1])])
+    return np.column_stack([point_columns[:, :-1], mark_missing(point_columns[:, -1])])
 
 
 def read_column_titles(path: Path) -> list[ColumnHead] | None:
@@ -149,9 +149,9 @@ def read_titled_file(
     return heights_from_columns(path, table, factors), units[0]
 
 
-def _parse_spacing(path: Path, text: str, name: str) -> tuple[float, str]:
+def _parse_spacing(path: Path, spacing_text: str, name: str) -> tuple[float, str]:
     """Read a grid spacing from the declaration of a layout: its value [m], and its unit in the file."""
-    match = re.search(rf"\b{name}\s*=\s*([-+\d.]+(?:[eE][-+]?\d+)?)\s*([a-zµμ]*)", text)
+    match = re.search(rf"\b{name}\s*=\s*([-+\d.]+(?:[eE][-+]?\d+)?)\s*([a-zµμ]*)", spacing_text)
     if not match:
         raise ValueError(f"{path}: the header states no {name}; write it as {name} = 0.5 um")
     try:
@@ -199,20 +199,24 @@ def _parse_numbers(path: Path, line: int, row: Sequence[str]) -> Array:
     return np.array(values, dtype=np.float64)
 
 
-def heights_from_columns(path: Path, values: Array, unit_factors: list[float]) -> Heights:
+def heights_from_columns(path: Path, grid_columns: Array, unit_factors: list[float]) -> Heights:
     """Profile from columns x, z, or areal map from columns x, y, z.
 
-    values       : (n, 2) or (n, 3)
+    grid_columns : (n, 2) or (n, 3)
     unit_factors : units of the columns in metres
 
     Raises ValueError for points that lie on no regular grid or occur twice.
     """
-    if values.shape[1] != len(unit_factors):
-        raise ValueError(f"{path}: has {values.shape[1]} columns, its header declares {len(unit_factors)}")
+    if grid_columns.shape[1] != len(unit_factors):
+        raise ValueError(
+            f"{path}: has {grid_columns.shape[1]} columns, its header declares {len(unit_factors)}"
+        )
     if len(unit_factors) == 2:
-        return _profile_from_columns(path, values[:, 0], values[:, 1] * unit_factors[1], unit_factors[0])
+        return _profile_from_columns(
+            path, grid_columns[:, 0], grid_columns[:, 1] * unit_factors[1], unit_factors[0]
+        )
     (x, dx), (y, dy) = (
-        _grid_indices(path, name, values[:, i], unit_factors[i]) for i, name in enumerate("xy")
+        _grid_indices(path, name, grid_columns[:, i], unit_factors[i]) for i, name in enumerate("xy")
     )
     if (x.max() + 1) * (y.max() + 1) > 4 * x.size:
         raise ValueError(f"{path}: {x.size} points do not lie on a grid of x and y; resample them to a grid")
@@ -221,14 +225,16 @@ def heights_from_columns(path: Path, values: Array, unit_factors: list[float]) -
     occupied[y, x] = True
     if np.count_nonzero(occupied) < x.size:
         raise ValueError(f"{path}: some points (x, y) are repeated; give every point once")
-    heights[y, x] = values[:, 2] * unit_factors[2]
+    heights[y, x] = grid_columns[:, 2] * unit_factors[2]
     return ArealMap(z=heights, dx=dx, dy=dy, name=str(path))
 
 
-def _grid_indices(path: Path, name: str, values: Array, unit_size: float) -> tuple[grid.GridIndices, float]:
+def _grid_indices(
+    path: Path, axis_name: str, coordinates: Array, unit_size: float
+) -> tuple[grid.GridIndices, float]:
     """Grid index of every point along x or y, and the grid spacing [m]; the points may have any order."""
-    positions, inverse = np.unique(values, return_inverse=True)
-    index, step = grid.fit_grid(path, name, positions, unit_size)
+    positions, inverse = np.unique(coordinates, return_inverse=True)
+    index, step = grid.fit_grid(path, axis_name, positions, unit_size)
     return index[inverse], step * unit_size
 
 

@@ -15,7 +15,7 @@ from .spectrum import ScaleSeries
 
 MIN_LAW_DEVIATION = 0.03
 """Least standard deviation [1] of ln(value) from the law that the fit assumes, at each scale."""
-LOG_SCALE_CORRELATION_LENGTH = 0.5
+CORRELATION_LENGTH_IN_LN_SCALE = 0.5
 """Correlation length in ln(scale) [1] of the deviations from the law."""
 MAX_DIMENSION_DRIFT = 0.1
 """Largest drift of D over a self-affine range [1]; a larger one is allowed within two standard errors."""
@@ -205,7 +205,7 @@ def _whitening_matrix(covariance: Array) -> Array:
 
 def _correlation_matrix(log_scale: Array) -> Array:
     """Correlation matrix (n, n) [1] of the deviations from the law at ln(scale) x (n)."""
-    return np.asarray(np.exp(-np.abs(log_scale[:, None] - log_scale) / LOG_SCALE_CORRELATION_LENGTH))
+    return np.asarray(np.exp(-np.abs(log_scale[:, None] - log_scale) / CORRELATION_LENGTH_IN_LN_SCALE))
 
 
 def _excess_deviation(

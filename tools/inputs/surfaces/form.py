@@ -262,7 +262,10 @@ def scan_roughness(heights_with_gaps: Heights, filled_heights: Heights, longest_
 
 
 def _sample_heights(z: Array, spacings: tuple[float, ...], slope: float) -> HeightSample:
-    """Sample of heights z on a grid, with the squared differences of neighbours scaled to the rms slope."""
+    """Heights z [m] on a grid, and squared slopes [1] from the differences of neighbouring heights.
+
+    The squared slopes are scaled so that their mean is the square of the rms slope `slope` [1].
+    """
     squared = np.zeros_like(z)
     for axis, spacing in enumerate(spacings):
         difference = (np.diff(z, axis=axis) / spacing) ** 2

@@ -151,9 +151,9 @@ def fit_grid(
     return index, step
 
 
-def _grid_distance(positions: Array, index: GridIndices, step: float) -> Array:
+def _grid_distance(positions: Array, grid_indices: GridIndices, grid_spacing: float) -> Array:
     """Distance of each position from its point of a regular grid."""
-    return np.asarray(np.abs(positions - index * step))
+    return np.asarray(np.abs(positions - grid_indices * grid_spacing))
 
 
 def last_digit_unit(positions: Array) -> Array:

@@ -104,13 +104,17 @@ def identify(
     )
 
 
-def make_two_sided_series(series: ScaleSeries) -> ScaleSeries:
+def make_two_sided_series(one_sided_series: ScaleSeries) -> ScaleSeries:
     """Series of the equivalent surface of two sides with the same finish, from the series of one side."""
-    return replace(series, value=2.0 * series.value, structure_or_psd=2.0 * series.structure_or_psd)
+    return replace(
+        one_sided_series,
+        value=2.0 * one_sided_series.value,
+        structure_or_psd=2.0 * one_sided_series.structure_or_psd,
+    )
 
 
 def add_series(first_series: ScaleSeries, second_series: ScaleSeries) -> ScaleSeries:
-    """Series of the equivalent surface of two surfaces: the sum of both over their common range of scales.
+    """Add the series of two surfaces over their common range of scales, for the equivalent surface.
 
     Raises ValueError if fewer than four scales are common.
     """
@@ -177,10 +181,10 @@ def _fractal_result(series: ScaleSeries, law: SelfAffineLaw) -> FractalResult:
     )
 
 
-def _confidence_interval(values: Array) -> tuple[float, float, float]:
+def _confidence_interval(estimates: Array) -> tuple[float, float, float]:
     """Estimate of a quantity with its confidence interval.
 
-    values : the first is the estimate, the others are random samples of it
+    estimates : the first is the estimate, the others are random samples of it
     """
-    low, high = np.quantile(values[1:], [0.5 - 0.5 * CONFIDENCE_LEVEL, 0.5 + 0.5 * CONFIDENCE_LEVEL])
-    return float(values[0]), float(low), float(high)
+    low, high = np.quantile(estimates[1:], [0.5 - 0.5 * CONFIDENCE_LEVEL, 0.5 + 0.5 * CONFIDENCE_LEVEL])
+    return float(estimates[0]), float(low), float(high)

@@ -49,11 +49,13 @@ def _profile_direction(identified_surface: Identification, surface: RoughSurface
     return surface.direction if identified_surface.is_textured else None
 
 
-def _dimension_and_roughness(result: FractalResult, surface: RoughSurface) -> tuple[Estimate, Estimate]:
-    """Fractal parameters D and G of a result, as the joint needs them: of the surface or of the profile."""
+def _dimension_and_roughness(
+    fractal_result: FractalResult, surface: RoughSurface
+) -> tuple[Estimate, Estimate]:
+    """Fractal parameters D and G of a result: of the surface or of the profile, as the joint needs them."""
     if surface.is_areal:
-        return result.areal.D_s, result.areal.G_s
-    return result.profile.D, result.profile.G
+        return fractal_result.areal.D_s, fractal_result.areal.G_s
+    return fractal_result.profile.D, fractal_result.profile.G
 
 
 def dimension_meaning(joint: str) -> str:
@@ -128,7 +130,7 @@ def _with_fractal_parameters(
 
 
 def _describe_files(identified_surface: Identification) -> str:
-    """Names of the scanned files and the sides that they represent, as text."""
+    """Name the scanned files and the sides that they represent, as text."""
     if len(identified_surface.file_names) == 2:
         return (
             f"{identified_surface.file_names[0]} and {identified_surface.file_names[1]} (equivalent surface)"
@@ -143,26 +145,30 @@ def _describe_files(identified_surface: Identification) -> str:
     )
 
 
-def _describe_fit(identified_surface: Identification, result: FractalResult) -> str:
-    """Text for the source of a parameter: files, method and range of scales of a result."""
+def _describe_fit(identified_surface: Identification, fractal_result: FractalResult) -> str:
+    """Describe files, method and range of scales of a result, for the source of a parameter."""
     methods = {"structure": "structure function, lags", "psd": "power spectral density, wavelengths"}
     return (
-        f"identified from {_describe_files(identified_surface)} by {methods[result.method]} "
-        f"{result.fit.min_scale:.3g} to {result.fit.max_scale:.3g} m"
+        f"identified from {_describe_files(identified_surface)} by {methods[fractal_result.method]} "
+        f"{fractal_result.fit.min_scale:.3g} to {fractal_result.fit.max_scale:.3g} m"
     )
 
 
 def _describe_source(
-    identified_surface: Identification, result: FractalResult, surface: RoughSurface, symbol: str
+    identified_surface: Identification, fractal_result: FractalResult, surface: RoughSurface, symbol: str
 ) -> str:
-    """Text for the source of D or G: files, method, direction and confidence interval."""
-    D, G = _dimension_and_roughness(result, surface)
+    """Describe files, method, direction and confidence interval, for the source of D or G."""
+    D, G = _dimension_and_roughness(fractal_result, surface)
     estimate = D if symbol == "D" else G
     if surface.is_areal:
         extent = "of the surface"
     else:
-        extent = "of the profile" if result.direction in ("profile", "areal") else f"along {result.direction}"
+        extent = (
+            "of the profile"
+            if fractal_result.direction in ("profile", "areal")
+            else f"along {fractal_result.direction}"
+        )
     return (
-        f"{_describe_fit(identified_surface, result)}; {extent}; 95 % interval {estimate.low:.4g} to "
+        f"{_describe_fit(identified_surface, fractal_result)}; {extent}; 95 % interval {estimate.low:.4g} to "
         f"{estimate.high:.4g}"
     )

@@ -28,7 +28,7 @@ PLAUSIBLE_LENGTHS = (1e-7, 1.0)
 """Shortest and longest plausible side of a scan [m]."""
 SUGGESTED_UNITS = ("mm", "um", "nm")
 """Units that a message may suggest instead of an implausible one."""
-TYPICAL_LENGTH = 1e-3
+TYPICAL_SCAN_LENGTH = 1e-3
 """Length of a typical scan [m]."""
 TEXT_SUFFIXES = (".csv", ".txt", ".dat", ".xy", ".prf")
 """Suffixes of text files that may have columns of numbers without a header."""
@@ -117,7 +117,8 @@ def _check_size(heights: Heights, unit: str) -> None:
     factor = unit_size(unit)
     number = max(heights.lengths) / factor
     likely = min(
-        SUGGESTED_UNITS, key=lambda name: abs(np.log(number * csvfile.LENGTH_UNITS[name] / TYPICAL_LENGTH))
+        SUGGESTED_UNITS,
+        key=lambda name: abs(np.log(number * csvfile.LENGTH_UNITS[name] / TYPICAL_SCAN_LENGTH)),
     )
     size = " x ".join(f"{length:.4g} m" for length in heights.lengths)
     likely_size = " x ".join(f"{length / factor:.4g} {likely}" for length in heights.lengths)
@@ -234,7 +235,7 @@ def unit_size(unit: str) -> float:
 def _convert_heights(
     path: Path, topography: Any, side_lengths: Any, heights: Array, unit_size: float
 ) -> Heights:
-    """Heights of SurfaceTopography as profile or areal map with axes (y, x), missing points as NaN.
+    """Convert heights of SurfaceTopography to a profile, or a map with axes (y, x); missing points are NaN.
 
     unit_size : unit of the heights and side lengths [m]
     """

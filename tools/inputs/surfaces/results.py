@@ -11,7 +11,7 @@ from jointfmu.quantity import Array
 
 from ...common import plots
 from ..fractal import second_difference_ratio
-from .bearing_curve import MAX_GAUSSIAN_TAIL_RATIO, BearingCurve, HeightSample, tail_ratio
+from .bearing_curve import MAX_GAUSSIAN_TAIL_OVER_RMS_HEIGHT, BearingCurve, HeightSample, tail_ratio
 from .fit import SelfAffineLaw
 from .form import Repair, ScanRoughness
 from .heights import ArealMap
@@ -148,7 +148,10 @@ class Identification:
     def is_gaussian(self) -> bool:
         """Whether the upper tail agrees with Gaussian heights; also true if parts of the scan disagree."""
         ratios = [self.tail_ratio, *map(tail_ratio, self.gap_parts)]
-        return not (max(ratios) < 1.0 / MAX_GAUSSIAN_TAIL_RATIO or min(ratios) > MAX_GAUSSIAN_TAIL_RATIO)
+        return not (
+            max(ratios) < 1.0 / MAX_GAUSSIAN_TAIL_OVER_RMS_HEIGHT
+            or min(ratios) > MAX_GAUSSIAN_TAIL_OVER_RMS_HEIGHT
+        )
 
     @property
     def slope(self) -> float:
@@ -161,7 +164,7 @@ class Identification:
         return self.scans[0].longest_wave
 
     def select_best_result(self, direction: str | None = None, method: str | None = None) -> FractalResult:
-        """Best result in a direction (None: the whole surface): self-affine, smallest standard error of D.
+        """Select the best result in a direction (None: any): self-affine, smallest standard error of D.
 
         A result with D at an end of its interval comes last, because its standard error is not valid.
         """
@@ -171,7 +174,7 @@ class Identification:
         )
 
     def select_results_in_direction(self, direction: str | None = None) -> list[FractalResult]:
-        """Results of all methods in a direction (None: the whole surface)."""
+        """Select the results of all methods in a direction (None: the whole surface)."""
         direction = direction or self.results[0].direction
         return [r for r in self.results if r.direction == direction]
 
@@ -213,10 +216,10 @@ def mean_line_shares(heights: ArealMap) -> tuple[float, float]:
     return shares[0], shares[1]
 
 
-def list_warnings(results: Sequence[FractalResult], is_textured: bool) -> list[str]:
+def list_warnings(fractal_results: Sequence[FractalResult], is_textured: bool) -> list[str]:
     """Warnings for the user about the results of one surface.
 
-    results : results of all directions and methods; the first two are of the whole surface
+    fractal_results : results of all directions and methods; the first two are of the whole surface
     """
     lines = []
     if is_textured:
@@ -224,7 +227,7 @@ def list_warnings(results: Sequence[FractalResult], is_textured: bool) -> list[s
             "the surface is textured (its lines repeat): D_s and G_s of an isotropic surface do not describe "
             "it, use D and G along x and y"
         )
-    for result in results:
+    for result in fractal_results:
         label = f"{result.method}, {result.direction}"
         if not (result.fit.is_self_affine or result.fit.drift_covers_dimensions):
             lines.append(
@@ -242,14 +245,14 @@ def list_warnings(results: Sequence[FractalResult], is_textured: bool) -> list[s
             )
         if result.fit.is_at_bound:
             lines.append(f"{label}: D = {result.profile.D.value:.2f} lies at the end of 1 to 2; no fractal")
-    G = min(results[:2], key=lambda result: result.fit.covariance[0, 0]).profile.G
+    G = min(fractal_results[:2], key=lambda result: result.fit.covariance[0, 0]).profile.G
     if G.interval_decades > 4.0:
         lines.append(
             f"G is {'hardly' if G.is_determined else 'not'} determined: its interval spans "
             f"{G.interval_decades:.1f} "
             "decades; a larger patch or more decades are needed"
         )
-    structures, spectra = results[0].profile.D, results[1].profile.D
+    structures, spectra = fractal_results[0].profile.D, fractal_results[1].profile.D
     if structures.low > spectra.high or spectra.low > structures.high:
         lines.append(f"the methods disagree: D = {structures.value:.3f} and {spectra.value:.3f}")
     return lines
@@ -283,22 +286,22 @@ def draw_identification(identified_surface: Identification, path: str | Path) ->
             panel.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.14))
 
 
-def _draw_result(axes: "Axes", result: FractalResult) -> None:
+def _draw_result(axes: "Axes", fractal_result: FractalResult) -> None:
     """Plot one result: all data, data in the range of the fit, and the fitted law."""
-    x, y, law = _plot_data(result)
-    inside = (result.series.scale >= result.fit.min_scale * 0.999) & (
-        result.series.scale <= result.fit.max_scale * 1.001
+    x, y, law = _plot_data(fractal_result)
+    inside = (fractal_result.series.scale >= fractal_result.fit.min_scale * 0.999) & (
+        fractal_result.series.scale <= fractal_result.fit.max_scale * 1.001
     )
-    colour = DIRECTION_COLOURS[result.direction]
+    colour = DIRECTION_COLOURS[fractal_result.direction]
     D, low, high = (
-        (result.areal.D_s.value, result.areal.D_s.low, result.areal.D_s.high)
-        if result.direction == "areal"
-        else (result.profile.D.value, result.profile.D.low, result.profile.D.high)
+        (fractal_result.areal.D_s.value, fractal_result.areal.D_s.low, fractal_result.areal.D_s.high)
+        if fractal_result.direction == "areal"
+        else (fractal_result.profile.D.value, fractal_result.profile.D.low, fractal_result.profile.D.high)
     )
-    name = "D_s" if result.direction == "areal" else "D"
+    name = "D_s" if fractal_result.direction == "areal" else "D"
     label = (
-        f"{result.direction}: {name} = {D:.3f} ({low:.3f} to {high:.3f}), "
-        f"{1e6 * result.fit.min_scale:.3g} to {1e6 * result.fit.max_scale:.3g} µm"
+        f"{fractal_result.direction}: {name} = {D:.3f} ({low:.3f} to {high:.3f}), "
+        f"{1e6 * fractal_result.fit.min_scale:.3g} to {1e6 * fractal_result.fit.max_scale:.3g} µm"
     )
     axes.plot(x, y, "o", ms=3.5, mfc="none", color=colour, alpha=0.5)
     axes.plot(x[inside], y[inside], "o", ms=3.5, color=colour)
@@ -316,14 +319,14 @@ def _set_ticks(axis: Any) -> None:
     axis.set_minor_formatter(NullFormatter())
 
 
-def _plot_data(result: FractalResult) -> tuple[Array, Array, Array]:
+def _plot_data(fractal_result: FractalResult) -> tuple[Array, Array, Array]:
     """Abscissa, measured values and fitted law of the plot: structure function, or power spectral density.
 
     Both are plotted as they are before the smoothing over neighbouring lags or wavelengths. The structure
     function is V/(4 - 4^H), with the second difference V of the heights, from which a tilt of the surface
     cancels.
     """
-    series, fit = result.series, result.fit
+    series, fit = fractal_result.series, fractal_result.fit
     expected = series.expected_value(fit.H)
     is_structure = series.method == "structure"
     unsmoothed = structure_power_law(series.scale, fit.H) if is_structure else series.scale ** (2.0 * fit.H)

@@ -139,7 +139,7 @@ def read_matrix(path: Path, header_lines: int, options: ScanOptions) -> tuple[He
 
 
 def _read_header(path: Path, header_lines: int) -> dict[str, list[str]]:
-    """Header of a matrix: {name in lower case: the cells after it}."""
+    """Read the header of a matrix: {name in lower case: the cells after it}."""
     rows = []
     for _, line in read_numbered_lines(path, header_lines):
         rows.append([cell.strip() for cell in split_cells(line, find_separator(line))])

@@ -143,7 +143,7 @@ def _rms_slope(grid: ArealMap) -> float:
 
 
 def _press(
-    grid: ArealMap, pressures: Array, modulus: float, hardness: float, steps: Iterator[int]
+    grid: ArealMap, pressures: Array, modulus: float, hardness: float, step_counter: Iterator[int]
 ) -> Iterator[tuple[float, float, int]]:
     """Press a grid of heights on a half-space, at several pressures, by boundary elements.
 
@@ -165,7 +165,7 @@ def _press(
     z = grid.z - grid.z.mean()
     forces = None
     for pressure in pressures:
-        next(steps, None)
+        next(step_counter, None)
         mean_force = float(pressure) * point
         options = {
             "external_force": float(pressure) * area,

@@ -50,7 +50,7 @@ class ScaleSeries:
     covariance: Callable[[float], Array]
 
     def select_scales(self, selection: NDArray[Any]) -> "ScaleSeries":
-        """Series at the selected scales, by mask or indices."""
+        """Select scales of the series by mask or indices; returns a new series."""
         return replace(
             self,
             scale=self.scale[selection],
@@ -132,23 +132,23 @@ def _mean_square(values: Array) -> float:
     return float(np.einsum("i,i->", finite, finite) / finite.size)
 
 
-def structure_power_law(scale: Array, H: float) -> Array:
+def structure_power_law(lags: Array, H: float) -> Array:
     """Structure function V [m2] at lags [m], for the spectrum Phi(frequency) = frequency^(-2H)."""
-    return np.asarray(2.0 * structure_constant(H) * second_difference_ratio(H) * scale ** (2.0 * H))
+    return np.asarray(2.0 * structure_constant(H) * second_difference_ratio(H) * lags ** (2.0 * H))
 
 
-def _wave_weights(scale: Array, frequency: Array) -> Array:
+def _wave_weights(lags: Array, frequency: Array) -> Array:
     """Weight (lags, frequencies) [1] of a wave of frequency f in V(tau): (1 - cos 2 pi f tau)^2."""
-    return np.asarray((1.0 - np.cos(2.0 * np.pi * np.multiply.outer(scale, frequency))) ** 2)
+    return np.asarray((1.0 - np.cos(2.0 * np.pi * np.multiply.outer(lags, frequency))) ** 2)
 
 
-def _line_covariance(scale: Array, length: float) -> Callable[[float], Array]:
+def _line_covariance(lags: Array, length: float) -> Callable[[float], Array]:
     """Covariance of ln(V) as a function of H, for one line of this length [m].
 
     Several lines of a map count as one line, which is conservative also for a textured map.
     """
     frequency = np.arange(1, 4 * COVARIANCE_MODE_COUNT) / length
-    response = _wave_weights(scale, frequency)
+    response = _wave_weights(lags, frequency)
 
     def covariance(H: float) -> Array:
         """Covariance of ln(V) for the Hurst exponent H."""
@@ -159,13 +159,13 @@ def _line_covariance(scale: Array, length: float) -> Callable[[float], Array]:
     return covariance
 
 
-def _areal_covariance(scale: Array, lengths: tuple[float, ...]) -> Callable[[float], Array]:
+def _areal_covariance(lags: Array, lengths: tuple[float, ...]) -> Callable[[float], Array]:
     """Covariance of ln(V) as a function of H, for the mean over all lines along x and y.
 
     The map is isotropic, with side lengths [m].
     """
     fx, fy = (np.arange(1, COVARIANCE_MODE_COUNT) / length for length in lengths)
-    wx, wy = _wave_weights(scale, fx), _wave_weights(scale, fy)
+    wx, wy = _wave_weights(lags, fx), _wave_weights(lags, fy)
     square = fx[None, :] ** 2 + fy[:, None] ** 2
 
     def covariance(H: float) -> Array:

@@ -24,16 +24,16 @@ INTERFACE_TABLE_FILE = FileKind("table of an interface", (".csv",))
 class InterfacePoints:
     """Points of the interface law `table`: normal stiffness per area over pressure, with its range.
 
-    pressure, stiffness : (n) [Pa], [Pa/m]
-    ratio               : K_T/K_N of elastic contact spots [1]
-    factor_range        : smallest and largest stiffness over the stiffness of the points [1]
-    source              : text on the origin
-    plastic_area_share  : (n) share of the real contact area at the hardness [1]; empty: not computed
+    pressure, stiffness   : (n) [Pa], [Pa/m]
+    shear_stiffness_ratio : K_T/K_N of elastic contact spots [1]
+    factor_range          : smallest and largest stiffness over the stiffness of the points [1]
+    source                : text on the origin
+    plastic_area_share    : (n) share of the real contact area at the hardness [1]; empty: not computed
     """
 
     pressure: Array
     stiffness: Array
-    ratio: float
+    shear_stiffness_ratio: float
     factor_range: tuple[float, float]
     source: str
     plastic_area_share: Array = field(default_factory=lambda: np.zeros(0))
@@ -42,7 +42,7 @@ class InterfacePoints:
         """Format the points as the CSV file that `new --interface-table` reads."""
         low, high = self.factor_range
         rows = [
-            f"{p:.6g},{k:.6g},{low * k:.6g},{high * k:.6g},{self.ratio:.6g}"
+            f"{p:.6g},{k:.6g},{low * k:.6g},{high * k:.6g},{self.shear_stiffness_ratio:.6g}"
             for p, k in zip(self.pressure, self.stiffness, strict=True)
         ]
         heads = "pressure [Pa],stiffness [Pa/m],stiffness_low [Pa/m],stiffness_high [Pa/m],ratio [1]"
@@ -54,7 +54,7 @@ class MaterialPair:
     """Contact of two materials: contact modulus E* [Pa], K_T/K_N [1], hardness of the softer one [Pa]."""
 
     modulus: float
-    ratio: float
+    shear_stiffness_ratio: float
     hardness: float
     names: str
 
@@ -75,7 +75,7 @@ def points_from_tail(curve: BearingCurve, materials: MaterialPair, files: str) -
         f"upper tail of the heights of {files}: pressure over decay length, E* = {materials.modulus:.4g} Pa "
         f"of {materials.names}; range: from boundary elements of single surfaces (docs/validity_stiffness.md)"
     )
-    return InterfacePoints(pressure, stiffness, materials.ratio, TABLE_FACTOR_RANGE, source)
+    return InterfacePoints(pressure, stiffness, materials.shear_stiffness_ratio, TABLE_FACTOR_RANGE, source)
 
 
 def points_from_solution(
@@ -101,7 +101,7 @@ def points_from_solution(
     return InterfacePoints(
         found.pressure,
         found.stiffness,
-        materials.ratio,
+        materials.shear_stiffness_ratio,
         limits,
         source,
         plastic_area_share=found.plastic_area_share,
@@ -116,14 +116,18 @@ def has_table_law(joint: str) -> bool:
     )
 
 
-def with_points(parameter_file: ParameterFile, points: InterfacePoints) -> ParameterFile:
+def with_points(parameter_file: ParameterFile, interface_points: InterfacePoints) -> ParameterFile:
     """Copy of a parameter file of the law `table` with new points of the stiffness."""
     values = {
-        "table.pressure": tuple(float(f"{p:.6g}") for p in points.pressure),
-        "table.stiffness": tuple(float(f"{k:.6g}") for k in points.stiffness),
+        "table.pressure": tuple(float(f"{p:.6g}") for p in interface_points.pressure),
+        "table.stiffness": tuple(float(f"{k:.6g}") for k in interface_points.stiffness),
         "table.factor": 1.0,
     }
-    parameter_file = parameter_file.with_values(values, "derived", points.source)
+    parameter_file = parameter_file.with_values(values, "derived", interface_points.source)
     text = "4 G'/E* of elastic contact spots (Mindlin 1949), not measured"
-    parameter_file = parameter_file.with_values({"table.ratio": points.ratio}, "estimate", text)
-    return replace(parameter_file, ranges={**parameter_file.ranges, "table.factor": points.factor_range})
+    parameter_file = parameter_file.with_values(
+        {"table.ratio": interface_points.shear_stiffness_ratio}, "estimate", text
+    )
+    return replace(
+        parameter_file, ranges={**parameter_file.ranges, "table.factor": interface_points.factor_range}
+    )

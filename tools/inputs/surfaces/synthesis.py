@@ -103,7 +103,7 @@ def synthesize_textured(waves: Waves, D: tuple[float, float], G: tuple[float, fl
     return ArealMap(z=z, dx=spacing, dy=spacing, name="synthetic textured surface")
 
 
-def _check_open_interval(name: str, value: float, low: float, high: float, doc: str) -> None:
+def _check_open_interval(quantity_name: str, value: float, low: float, high: float, doc: str) -> None:
     """Raise ValueError if a value is outside the open interval (low, high)."""
-    if text := ParameterLimit(name, Interval(low, high), doc).find_problem(value, "1"):
+    if text := ParameterLimit(quantity_name, Interval(low, high), doc).find_problem(value, "1"):
         raise ValueError(text)

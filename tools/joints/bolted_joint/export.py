@@ -283,7 +283,7 @@ def _make_springs(
     node_pairs: "NodePairs | None",
     placement: "Placement",
 ) -> "tuple[Springs, str]":
-    """Springs between node pairs, in the tightened state that the user states."""
+    """Make the springs between node pairs, in the tightened state that the user states."""
     spring = BoltedJointSpring.for_interface_nodes(joint)
     if tightened_state is None:
         if node_pairs is None:

@@ -28,9 +28,9 @@ _FMU_NAME = "BoltedJoint"
 """Name of the FMU of the bolted joint."""
 
 
-def _check_separation(folder: Path, ramp_result: ramp.RampResult) -> tuple[str, float]:
+def _check_separation(fmu_folder: Path, ramp_result: ramp.RampResult) -> tuple[str, float]:
     """Compare the normal force of the FMU under growing separation with the integral of its stiffness."""
-    pulled = ramp.run_ramp(folder / f"{_FMU_NAME}.fmu", "s_rel_z", 5e-6, 1e-8, {"preload": 9e3}).columns
+    pulled = ramp.run_ramp(fmu_folder / f"{_FMU_NAME}.fmu", "s_rel_z", 5e-6, 1e-8, {"preload": 9e3}).columns
     force = -cumulative_simpson(pulled["K_zz"], x=pulled["s_rel_z"], initial=0.0)
     return "f_z pulled apart against the integral of K_zz ds (scipy, Simpson)", relative_deviation(
         pulled["f_z"], force
@@ -42,12 +42,12 @@ RAMP_CHECKS = {_FMU_NAME: _check_separation}
 relative deviation [1])."""
 
 
-def compute_through_fmu(published_point: PublishedPoint, folder: Path) -> float | None:
+def compute_through_fmu(published_point: PublishedPoint, fmu_folder: Path) -> float | None:
     """Compute a published point by running an FMU of a folder; None if no FMU has this quantity."""
     if published_point.quantity != "p_max":
         return None
     load = published_point.where["preload"]
-    return float(ramp.run_ramp(folder / f"{_FMU_NAME}.fmu", "preload", load, load).columns["p_max"][-1])
+    return float(ramp.run_ramp(fmu_folder / f"{_FMU_NAME}.fmu", "preload", load, load).columns["p_max"][-1])
 
 
 _PRESSURE_MAP_LOADS = ((9e3, 0.0), (15e3, 4500.0))
@@ -56,7 +56,7 @@ paper."""
 
 
 def make_figures(job_result: Any) -> list[Figure]:
-    """Figures of the bolted joint, from the results of the main job (`PipelineResult`)."""
+    """Make the figures of the bolted joint, from the results of the main job (`PipelineResult`)."""
     joint = load_default("bolted_joint").values
     return [
         Figure(

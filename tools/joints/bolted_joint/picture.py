@@ -38,14 +38,14 @@ class SvgDrawing:
     height: float
     elements: list[str] = field(default_factory=list)
 
-    def add_element(self, tag: str, text: str = "", /, **attributes: object) -> None:
+    def add_element(self, tag: str, element_text: str = "", /, **attributes: object) -> None:
         """Add an SVG element. An `_` in the name of an attribute becomes `-`."""
         attribute_text = " ".join(
             f'{name.replace("_", "-")}="{f"{value:.1f}" if isinstance(value, float) else value}"'
             for name, value in attributes.items()
         )
         element = f"<{tag} {attribute_text}"
-        self.elements.append(f"{element}>{escape(text)}</{tag}>" if text else f"{element}/>")
+        self.elements.append(f"{element}>{escape(element_text)}</{tag}>" if element_text else f"{element}/>")
 
     def add_line(
         self, x1: float, y1: float, x2: float, y2: float, stroke: str = LINE_COLOUR, dash_pattern: str = ""
@@ -87,7 +87,7 @@ class SvgDrawing:
         self.add_element("polygon", points=" ".join(f"{a:.1f},{b:.1f}" for a, b in corners), fill=RED)
 
     def render(self, label: str) -> str:
-        """Text of the SVG file with a label for screen readers."""
+        """Render the picture as text of an SVG file, with a label for screen readers."""
         head = (
             f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {self.width:.0f} {self.height:.0f}" '
             f'width="{self.width:.0f}" role="img" aria-label="{escape(label)}" font-size="13" '
@@ -98,7 +98,7 @@ class SvgDrawing:
 
 
 def draw_plan(joint: AnyBoltedJoint, preload: float, moment: float) -> str:
-    """Plan view of the tightened interface from side 2, as SVG: pressure, numbered bolts, attachments.
+    """Draw the plan of the tightened interface from side 2 as SVG: pressure, bolts, attachments.
 
     preload : [N] of each bolt
     moment  : [N.m]
@@ -250,7 +250,7 @@ def _draw_bolts(
 
 
 def draw_section(joint: AnyBoltedJoint) -> str:
-    """Section of both sides, as SVG: thicknesses, bolts, and surfaces at which the load is applied."""
+    """Draw the section of both sides as SVG: thicknesses, bolts, surfaces where the load is applied."""
     bodies = joint.bodies
     assert isinstance(bodies, ElasticBodies)
     layout, attached = PlaneLayout.from_joint(joint), _attachment_name(joint)

@@ -42,7 +42,7 @@ def row_force(joint: BoltedJointParameters, preload: float, moment: float, row: 
 
 
 def critical_area(joint: BoltedJointParameters, choice: str) -> float:
-    """Critical area a'_c [m2] of a contact spot, by one of the choices of the parameter `critical_area`."""
+    """Critical area a'_c [m2] of a contact spot, by the equation that `choice` selects."""
     return float(zhao.critical_area(replace(joint, critical_area=choice)))
 
 

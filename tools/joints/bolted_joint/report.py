@@ -29,7 +29,7 @@ from .tensile_load import MAX_BOLT_OVER_TIGHTENING_FORCE, bolt_forces
 
 MAX_PLOTTED_OVER_OPENING_LOAD = 1.3
 """Largest plotted tensile force over the opening load of the interface [1]."""
-EQUAL_SHARE_TOLERANCE = 0.05
+MAX_BOLT_SHARE_EXCESS_OVER_MEAN = 0.05
 """Excess of the largest bolt share over the mean share [1], up to which bolts count as equally loaded."""
 EQUAL_FORCE_TOLERANCE = 1e-3
 """Difference of two bolt forces over the largest one [1], up to which they share a curve."""
@@ -137,7 +137,7 @@ def stiffness_figures(load_history: LoadHistory) -> list[Figure]:
     panel = _bolt_force_chart(spring, preload, moment, MAX_PLOTTED_OVER_OPENING_LOAD * opening)
     share = compliances.bolt_force[:, 2]
     most_loaded = int(np.argmax(share))
-    is_uneven = share[most_loaded] > (1.0 + EQUAL_SHARE_TOLERANCE) * np.mean(share)
+    is_uneven = share[most_loaded] > (1.0 + MAX_BOLT_SHARE_EXCESS_OVER_MEAN) * np.mean(share)
     location = (
         f"around bolt {most_loaded + 1}, which carries {share[most_loaded]:.3g} of the force"
         if is_uneven
@@ -193,16 +193,16 @@ def _stiffness_text(compliances: Compliances, remaining_preload: float, moment: 
     )
 
 
-def _group_equal_rows(columns: Array) -> list[list[int]]:
+def _group_equal_rows(number_columns: Array) -> list[list[int]]:
     """Group the rows of columns of numbers: indices of rows with equal values together.
 
     The groups are in the order of their first rows.
     """
     groups: list[list[int]] = []
-    scale = float(np.max(np.abs(columns), initial=0.0))
-    for j, row in enumerate(columns):
+    scale = float(np.max(np.abs(number_columns), initial=0.0))
+    for j, row in enumerate(number_columns):
         for group in groups:
-            if np.allclose(row, columns[group[0]], rtol=0.0, atol=EQUAL_FORCE_TOLERANCE * scale):
+            if np.allclose(row, number_columns[group[0]], rtol=0.0, atol=EQUAL_FORCE_TOLERANCE * scale):
                 group.append(j)
                 break
         else:
@@ -211,7 +211,7 @@ def _group_equal_rows(columns: Array) -> list[list[int]]:
 
 
 def _name_bolts(bolts: Sequence[int]) -> str:
-    """Name of a curve that several bolts with equal forces share."""
+    """Name the bolts with equal forces, which share one curve of a chart."""
     names = ", ".join(bolt_force_name(j) for j in bolts)
     return f"{names} (equal)" if len(bolts) > 1 else names
 

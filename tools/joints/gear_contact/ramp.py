@@ -15,7 +15,7 @@ from ...run.ramps.ramp import RampResult
 from ...studies.checks import integrate_logarithmically, relative_deviation
 
 
-def _check_approach(folder: Path, ramp_result: RampResult) -> tuple[str, float]:
+def _check_approach(fmu_folder: Path, ramp_result: RampResult) -> tuple[str, float]:
     """Compare the approach along the load ramp of the FMU with the integral of the law's compliance."""
     law = load_default("gear_contact").values
     assert isinstance(law, GearContactParameters)
@@ -37,7 +37,7 @@ quantity, largest relative deviation [1])."""
 
 
 def make_figures(job_result: Any) -> list[Figure]:
-    """Figure of the gear contact, from the results of the main job (`PipelineResult`)."""
+    """Make the figure of the gear contact, from the results of the main job (`PipelineResult`)."""
     c = job_result.ramps["GearContact"].columns
     load = c["f"] / 1e3
     panels = [

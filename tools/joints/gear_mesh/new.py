@@ -114,14 +114,16 @@ def _parse_wheels(options: DrawingOptions) -> InvoluteGearPair:
     return gear_pair
 
 
-def _parse_pair(option: str, texts: Sequence[str]) -> tuple[float, float]:
+def _parse_pair(option_name: str, texts: Sequence[str]) -> tuple[float, float]:
     """Parse the two numbers of an option for wheel 1 and wheel 2.
 
     Raises ValueError for another count, and as `parse_value`.
     """
     if len(texts) != 2:
-        raise ValueError(f"{format_option_flag(option)} has {len(texts)} values, expected one of each wheel")
-    return parse_value(option, texts[0]), parse_value(option, texts[1])
+        raise ValueError(
+            f"{format_option_flag(option_name)} has {len(texts)} values, expected one of each wheel"
+        )
+    return parse_value(option_name, texts[0]), parse_value(option_name, texts[1])
 
 
 def _add_parameters(

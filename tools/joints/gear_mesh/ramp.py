@@ -19,7 +19,7 @@ _FULL_CONTACT_FORCE = 10.0
 """Force [N] of a tooth pair above which its contact is closed, with the default parameters."""
 
 
-def _check_deflection_and_work(folder: Path, ramp_result: RampResult) -> tuple[str, float]:
+def _check_deflection_and_work(fmu_folder: Path, ramp_result: RampResult) -> tuple[str, float]:
     """Compare deflection and work along the load ramp of the FMU with integrals of the stiffness."""
     mesh = load_default("gear_mesh").values
     assert isinstance(mesh, GearMeshParameters)
@@ -52,7 +52,7 @@ _FIGURE_FORCES = (5e2, 1e3, 2e3)
 
 
 def make_figures(job_result: Any) -> list[Figure]:
-    """Figures of the gear mesh, from the results of the main job (`PipelineResult`)."""
+    """Make the figures of the gear mesh, from the results of the main job (`PipelineResult`)."""
     return [
         Figure(
             "Stiffness and deflection over the mesh cycle",

@@ -84,8 +84,8 @@ def find_drive(drive_name: str) -> CatalogueEntry:
     raise ValueError(f"catalogue {drive_name!r} is unknown; {hint} (jointfmu catalogue)")
 
 
-def find_ratio(drive: CatalogueEntry, ratio: float) -> CatalogueEntry:
-    """Find the drive of the catalogue with the same series and size as a drive, and another ratio.
+def find_ratio(drive: CatalogueEntry, other_ratio: float) -> CatalogueEntry:
+    """Find the catalogue's drive with the series and size of a given drive, and with another speed ratio.
 
     Raises ValueError with the ratios of the catalogue if there is no such drive.
     """
@@ -94,11 +94,11 @@ def find_ratio(drive: CatalogueEntry, ratio: float) -> CatalogueEntry:
         for item in list_drives()
         if _name_without_ratio(item) == _name_without_ratio(drive)
     }
-    if ratio in siblings:
-        return siblings[ratio]
+    if other_ratio in siblings:
+        return siblings[other_ratio]
     raise ValueError(
-        f"--ratio = {ratio:g} is not in the catalogue for {_name_without_ratio(drive).strip('-')}, allowed "
-        f"are {', '.join(f'{known:g}' for known in sorted(siblings))} (jointfmu catalogue); without "
+        f"--ratio = {other_ratio:g} is not in the catalogue for {_name_without_ratio(drive).strip('-')}, "
+        f"allowed are {', '.join(f'{known:g}' for known in sorted(siblings))} (jointfmu catalogue); without "
         "--catalogue, state the numbers of the row"
     )
 
@@ -188,7 +188,7 @@ _FRICTION_TABLE_HEADINGS = {
 
 
 def _rated_and_peak_torque(
-    torque_table: TorqueTable, series: str, size: str, ratio: str
+    torque_table: TorqueTable, series: str, drive_size: str, speed_ratio: str
 ) -> dict[str, SourcedNumber]:
     """Rated and repeated peak torque of a drive: {column: number with source}.
 
@@ -197,8 +197,8 @@ def _rated_and_peak_torque(
     if series.startswith(ACTUATOR_SERIES):
         return {}
     for other in (series, *SERIES_WITH_PUBLISHED_TORQUES):
-        if row := torque_table.get((other, size, ratio)):
-            name = f"{other}-{size}-{ratio}"
+        if row := torque_table.get((other, drive_size, speed_ratio)):
+            name = f"{other}-{drive_size}-{speed_ratio}"
             if other == series:
                 kind, ratio_to_series = "catalogue", 1.0
                 text = f"{name}: {row['source']}"
@@ -217,14 +217,14 @@ def _rated_and_peak_torque(
     return {}
 
 
-def _hysteresis_limits(series: str, size: str, ratio: float) -> dict[str, SourcedNumber]:
+def _hysteresis_limits(series: str, drive_size: str, speed_ratio: float) -> dict[str, SourcedNumber]:
     """Upper limits of hysteresis and lost motion of a drive: {column: number with source}.
 
     The limits are those of actuators of the same size, or else the largest of all actuators.
     """
-    step = "30" if ratio < 50.0 else "50" if ratio == 50.0 else "50+"
+    step = "30" if speed_ratio < 50.0 else "50" if speed_ratio == 50.0 else "50+"
     rows = [row for row in _read_table("accuracy") if row["ratio"] == step]
-    same_size = [row for row in rows if row["size"] == size]
+    same_size = [row for row in rows if row["size"] == drive_size]
     limits = {}
     for column, head in _HYSTERESIS_LIMIT_HEADINGS.items():
         row = max(same_size or rows, key=lambda row: float(row[head]))
@@ -243,7 +243,7 @@ def _hysteresis_limits(series: str, size: str, ratio: float) -> dict[str, Source
 def _make_entry_with_friction(
     friction_row: Mapping[str, str], similar_drive: CatalogueEntry
 ) -> CatalogueEntry:
-    """Catalogue entry of a drive with published friction.
+    """Make the catalogue entry of a drive with published friction.
 
     similar_drive : drive of the same size, ratio and stiffness, which may be the drive itself; it supplies
                     the values that are not published
@@ -263,13 +263,13 @@ def _make_entry_with_friction(
 
 
 def _read_table(table_name: str) -> list[dict[str, str]]:
-    """Rows of a file of the catalogue: {heading: text} each."""
+    """Read the rows of a file of the catalogue: {heading: text} each."""
     path = files("jointfmu_models") / "reference" / f"harmonic_drive_catalogue_{table_name}.csv"
     return list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
 
 
 def _join_name(drive_name: str) -> str:
-    """Name of a drive without separators between its parts, for comparisons."""
+    """Join the parts of a drive's name without separators, for comparisons."""
     return drive_name.replace("-", "")
 
 

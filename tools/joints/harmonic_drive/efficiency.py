@@ -34,7 +34,9 @@ _STEADY_PARAMETERS: Mapping[str, float] = {
 def drives_with_friction() -> list[CatalogueEntry]:
     """Drives of the catalogue with a published starting torque."""
     return [
-        item for item in list_drives() if (n := item.numbers.get("starting_torque")) and n.kind == "catalogue"
+        item
+        for item in list_drives()
+        if (n := item.numbers.get("starting_torque")) and n.origin == "catalogue"
     ]
 
 
@@ -76,7 +78,7 @@ def solve_wind_up(transmitted_torque: Callable[[float], float], torque: float, s
     from scipy.optimize import brentq  # slow to import, and most commands import this module
 
     def residual(angle: float) -> float:
-        """Transmitted torque minus the wanted torque at a wind-up [rad]."""
+        """Torque [N.m] transmitted at a wind-up [rad], minus the torque to be transmitted."""
         return transmitted_torque(angle) - torque
 
     if not torque:

@@ -82,7 +82,7 @@ class ScaledFriction:
 
 @lru_cache(maxsize=512)  # most drives of the catalogue share size and ratio with others
 def scale_friction(
-    drive_size: float, ratio: float, published_drives: tuple[PublishedFriction, ...]
+    drive_size: float, speed_ratio: float, published_drives: tuple[PublishedFriction, ...]
 ) -> ScaledFriction:
     """Scale the friction of published drives (four or more) to a drive of a size [1] and a ratio [1]."""
     starting_logs = np.array(
@@ -108,7 +108,7 @@ def scale_friction(
         (drive_size / REFERENCE_SIZE) ** RUNNING_TORQUE_SIZE_EXPONENT,
     )
     rise = (max(x - reference.value, 0.0) for x in running)
-    starting = ScaledNumber(*(REFERENCE_RATIO / ratio * x for x in reference))
+    starting = ScaledNumber(*(REFERENCE_RATIO / speed_ratio * x for x in reference))
     losses = (
         _mean_loss([getattr(k, name) for k in published_drives]) for name in ("load_loss", "load_loss_back")
     )
@@ -118,7 +118,7 @@ def scale_friction(
 def _scale_torque(
     design_matrix: Array, torque_logarithms: Array, design_row: Array, torque_factor: float
 ) -> ScaledNumber:
-    """Torque [N.m] from a linear regression of its logarithm, times a factor.
+    """Estimate a torque [N.m] by linear regression of its logarithm, times a factor.
 
     design_matrix, torque_logarithms : (n, k), (n) data of the regression
     design_row : (k) of the drive
@@ -257,19 +257,24 @@ def _check_stated_numbers(
 
 
 def _make_friction_parameter(
-    column: str, number: SourcedNumber, convert: Callable[[float], float], source_text: str
+    friction_column: str, catalogue_number: SourcedNumber, convert: Callable[[float], float], source_text: str
 ) -> SourcedNumber:
-    """Friction parameter from a catalogue number, with source and interval.
+    """Make the friction parameter from a catalogue number, with source and interval.
 
     convert : number -> parameter
     """
-    kind = "derived" if source_text and number.kind != "estimate" else number.kind
-    source, interval = f"{number.source}; {PARAMETER_OF_COLUMN[column][1]}{source_text}", None
-    if number.interval is not None:
-        low, high = sorted(max(round(convert(end), _INTERVAL_DECIMALS), 0.0) for end in number.interval)
+    kind = "derived" if source_text and catalogue_number.origin != "estimate" else catalogue_number.origin
+    source, interval = (
+        f"{catalogue_number.source}; {PARAMETER_OF_COLUMN[friction_column][1]}{source_text}",
+        None,
+    )
+    if catalogue_number.interval is not None:
+        low, high = sorted(
+            max(round(convert(end), _INTERVAL_DECIMALS), 0.0) for end in catalogue_number.interval
+        )
         interval = low, high
         source += f"; {describe_interval(interval)}"
-    return SourcedNumber(max(convert(number.value), 0.0), kind, source, interval=interval)
+    return SourcedNumber(max(convert(catalogue_number.value), 0.0), kind, source, interval=interval)
 
 
 def describe_interval(interval: tuple[float, float]) -> str:
@@ -290,11 +295,13 @@ def rated_efficiency(drive: DriveParameters, temperature: float = REFERENCE_TEMP
     return float(transmitted / (transmitted + friction_torque))
 
 
-def collect_published_friction(entries: Iterable[CatalogueEntry]) -> dict[str, tuple[PublishedFriction, str]]:
-    """Published friction {drive: (friction, maker)} of all drives with a published starting torque."""
+def collect_published_friction(
+    catalogue_entries: Iterable[CatalogueEntry],
+) -> dict[str, tuple[PublishedFriction, str]]:
+    """Collect the friction {drive: (friction, maker)} of all drives with a published starting torque."""
     found = {}
-    for item in entries:
-        printed = {name: number for name, number in item.numbers.items() if number.kind == "catalogue"}
+    for item in catalogue_entries:
+        printed = {name: number for name, number in item.numbers.items() if number.origin == "catalogue"}
         if "starting_torque" in printed:
             maker = printed["starting_torque"].source.partition(": ")[2].partition(",")[0]
             found[item.name] = _published_friction(item.name, item.numbers["ratio"].value, printed), maker
@@ -302,14 +309,14 @@ def collect_published_friction(entries: Iterable[CatalogueEntry]) -> dict[str, t
 
 
 def _published_friction(
-    drive_name: str, ratio: float, sourced_numbers: Mapping[str, SourcedNumber]
+    drive_name: str, speed_ratio: float, sourced_numbers: Mapping[str, SourcedNumber]
 ) -> PublishedFriction:
     """Published friction of one drive; the losses follow from its numbers by `friction_parameters`."""
-    losses = friction_parameters({"ratio": SourcedNumber(ratio, "catalogue", ""), **sourced_numbers})
+    losses = friction_parameters({"ratio": SourcedNumber(speed_ratio, "catalogue", ""), **sourced_numbers})
     running = sourced_numbers.get("running_torque")
     return PublishedFriction(
         parse_drive_size(drive_name),
-        ratio,
+        speed_ratio,
         sourced_numbers["starting_torque"].value,
         running.value if running else None,
         losses["load_loss"].value if "efficiency" in sourced_numbers else None,
@@ -325,7 +332,7 @@ def parse_drive_size(drive_name: str) -> float:
 
 
 def add_friction_estimates(
-    entry: CatalogueEntry, published_drives: Mapping[str, tuple[PublishedFriction, str]]
+    catalogue_entry: CatalogueEntry, published_drives: Mapping[str, tuple[PublishedFriction, str]]
 ) -> CatalogueEntry:
     """Add estimates of the friction numbers that are not published for a drive.
 
@@ -333,22 +340,24 @@ def add_friction_estimates(
 
     Without a rated torque there is no estimate of the efficiency.
     """
-    numbers, ratio = dict(entry.numbers), entry.numbers["ratio"].value
+    numbers, ratio = dict(catalogue_entry.numbers), catalogue_entry.numbers["ratio"].value
     published = tuple(each for each, _ in published_drives.values())
-    law = scale_friction(parse_drive_size(entry.name), ratio, published)
+    law = scale_friction(parse_drive_size(catalogue_entry.name), ratio, published)
     makers: dict[str, list[str]] = {}
     for name, (_, maker) in published_drives.items():
         makers.setdefault(maker, []).append(name)
     text = " and ".join(f"{maker} ({', '.join(names)})" for maker, names in makers.items())
     text += ", scaled by size and ratio"
 
-    def add_column_estimate(column: str, value: float, *interval_ends: float) -> None:
+    def add_column_estimate(friction_column: str, estimated_value: float, *interval_ends: float) -> None:
         """Add an estimated number to the catalogue entry of a drive.
 
         A column for which the catalogue has a value is left unchanged.
         """
         interval = min(interval_ends), max(interval_ends)
-        numbers.setdefault(column, SourcedNumber(value, "estimate", text, interval=interval))
+        numbers.setdefault(
+            friction_column, SourcedNumber(estimated_value, "estimate", text, interval=interval)
+        )
 
     add_column_estimate("starting_torque", *law.starting_torque)
     start = numbers["starting_torque"].value
@@ -357,4 +366,4 @@ def add_friction_estimates(
     if rated := numbers.get("rated_torque"):
         idle = 1.0 + numbers["running_torque"].value * ratio / rated.value
         add_column_estimate("efficiency", *(1.0 / (idle + x) for x in law.load_loss))
-    return CatalogueEntry(entry.name, numbers)
+    return CatalogueEntry(catalogue_entry.name, numbers)

@@ -28,14 +28,14 @@ from ...systems.ringing import PlotAxis, SlipDeflection, VibrationTest, WorkingP
 from . import efficiency
 
 
-def _check_compliance(folder: Path, ramp_result: ramp.RampResult) -> tuple[str, float]:
+def _check_compliance(fmu_folder: Path, ramp_result: ramp.RampResult) -> tuple[str, float]:
     """Compare the wind-up along the ramp of the FMU with torque input with the integral of its compliance."""
     c = ramp_result.columns
     phi = cumulative_simpson(1.0 / c["K_WTS"], x=c["tau"], initial=0.0)
     return "phi_rel against the integral of dT/K_WTS (scipy, Simpson)", relative_deviation(c["phi_rel"], phi)
 
 
-def _check_stiffness(folder: Path, ramp_result: ramp.RampResult) -> tuple[str, float]:
+def _check_stiffness(fmu_folder: Path, ramp_result: ramp.RampResult) -> tuple[str, float]:
     """Compare the torque along the ramp of the FMU with motion input with the integral of its stiffness."""
     c = ramp_result.columns
     tau = cumulative_simpson(c["K_WTS"], x=c["phi_rel"], initial=0.0)
@@ -47,14 +47,14 @@ RAMP_CHECKS = {"HarmonicDriveSpring": _check_stiffness, "HarmonicDriveCompliance
 relative deviation [1])."""
 
 
-def compute_through_fmu(published_point: PublishedPoint, folder: Path) -> float | None:
+def compute_through_fmu(published_point: PublishedPoint, fmu_folder: Path) -> float | None:
     """Compute a published point by running an FMU of a folder; None if no FMU has this quantity."""
     where = published_point.where
 
     def run_drive(output_name: str, **settings: float) -> float:
-        """Output of the FMU under the torque of the point, with other parameters."""
+        """Run the FMU with other parameters at the torque of the published point; returns one output."""
         torque = where["torque"]
-        fmu = folder / "HarmonicDriveCompliance.fmu"
+        fmu = fmu_folder / "HarmonicDriveCompliance.fmu"
         return float(ramp.run_ramp(fmu, "tau", torque, torque, settings).columns[output_name][-1])
 
     if published_point.quantity == "K_TS":
@@ -78,7 +78,7 @@ _COMPLIANCE_FMU = "HarmonicDriveCompliance"
 
 
 def make_figures(job_result: Any) -> list[Figure]:
-    """Figures of the harmonic drive, from the results of the main job (`PipelineResult`)."""
+    """Make the figures of the harmonic drive, from the results of the main job (`PipelineResult`)."""
     result = job_result.ramps[_COMPLIANCE_FMU]
     return [
         Figure(

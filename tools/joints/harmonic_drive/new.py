@@ -136,30 +136,30 @@ def set_temperature(joint: NewJoint, temperature_text: str) -> NewJoint:
     return replace(joint, file=file, facts={**joint.facts, **facts})
 
 
-def _signed_ratio(options: DrawingOptions, ratio: SourcedNumber) -> tuple[SourcedNumber, str]:
+def _signed_ratio(options: DrawingOptions, stated_ratio: SourcedNumber) -> tuple[SourcedNumber, str]:
     """Speed ratio input/output with its sign, which depends on the fixed part; and a text on the sign."""
-    if ratio.value < 0.0:
+    if stated_ratio.value < 0.0:
         if options["fixed"]:
             raise ValueError(
-                f"--fixed {options['fixed']} with --ratio = {ratio.value:g}, whose sign is "
+                f"--fixed {options['fixed']} with --ratio = {stated_ratio.value:g}, whose sign is "
                 "stated; expected "
                 "the ratio as catalogues print it, above 0"
             )
-        return ratio, "as stated, with its sign"
+        return stated_ratio, "as stated, with its sign"
     fixed = options["fixed"] or next(iter(FIXED_PARTS))
     value = {
-        "circular-spline": -ratio.value,
-        "flexspline": ratio.value + 1.0,
-        "wave-generator": 1.0 + 1.0 / ratio.value,
+        "circular-spline": -stated_ratio.value,
+        "flexspline": stated_ratio.value + 1.0,
+        "wave-generator": 1.0 + 1.0 / stated_ratio.value,
     }[fixed]
-    source = f"{ratio.source}; {fixed.replace('-', ' ')} fixed"
-    return ratio._replace(value=value, source=source), FIXED_PARTS[fixed]
+    source = f"{stated_ratio.source}; {fixed.replace('-', ' ')} fixed"
+    return stated_ratio._replace(value=value, source=source), FIXED_PARTS[fixed]
 
 
 def read_friction_parameters(
     options: DrawingOptions, sourced_numbers: Mapping[str, SourcedNumber]
 ) -> dict[str, SourcedNumber]:
-    """Friction parameters of the drive, from stated numbers and numbers of the catalogue.
+    """Read the friction parameters of the drive, from stated numbers and numbers of the catalogue.
 
     Empty for a fixed wave generator. Raises ValueError for stated numbers that contradict each other.
     """
@@ -183,7 +183,7 @@ def read_friction_parameters(
         )
     if "starting_torque" in stated:  # scaled numbers belong to another starting torque; others must be met
         sourced_numbers = {
-            n: p for n, p in sourced_numbers.items() if n not in FRICTION_COLUMNS or p.kind != "estimate"
+            n: p for n, p in sourced_numbers.items() if n not in FRICTION_COLUMNS or p.origin != "estimate"
         }
         stated = [name for name in FRICTION_COLUMNS if name in sourced_numbers]
     return _add_motor_drag(friction_parameters(sourced_numbers, stated), options["motor_drag"])
@@ -208,7 +208,7 @@ def _add_motor_drag(
         interval = interval[0] + drag, interval[1] + drag
         source = f"{source.rpartition('; ')[0]}; {describe_interval(interval)}"
     total = SourcedNumber(
-        dry_friction.value + drag, dry_friction.kind, f"{source}; with {text}", interval=interval
+        dry_friction.value + drag, dry_friction.origin, f"{source}; with {text}", interval=interval
     )
     return {**friction_numbers, "friction_coulomb": total}
 
@@ -262,7 +262,7 @@ def _make_joint_with_catalogue_law(
         facts["lost_motion"] = (computed_angle, unit, text)
     if friction_numbers:
         facts["efficiency"] = (rated_efficiency(file.values), "1", "at rated torque and 2000 rev/min")
-    kinds = {name: number.kind for name, number in sourced_numbers.items() if name in file.values_by_name}
+    kinds = {name: number.origin for name, number in sourced_numbers.items() if name in file.values_by_name}
     guessed = ", ".join(sorted(name for name, kind in kinds.items() if kind == "estimate"))
     notes = [f"estimated, not in the catalogue row: {guessed}"]
     if file.values.corner == 0.0:
@@ -301,23 +301,23 @@ def _make_joint_with_contact_pair_law(
     """Make a drive with the law of Hu 2023, fitted to the numbers of a catalogue row."""
     from .fit import catalogue
 
-    kind, ratio = sourced_numbers["rated_torque"].kind, sourced_numbers["ratio"].value
+    kind, ratio = sourced_numbers["rated_torque"].origin, sourced_numbers["ratio"].value
     row = _catalogue_row(sourced_numbers)
     found = catalogue.fit_contact_pair_law(
         row, sourced_numbers=catalogue.make_sourced_numbers(row, kind, ratio, drive_name), source=drive_name
     )
     file = replace(found.parameters, name=drive_name)
     loss = sourced_numbers.get("hysteresis_loss")
-    if loss is not None and loss.kind != "estimate":
+    if loss is not None and loss.origin != "estimate":
         friction_numbers = {"hysteresis_loss": loss, **friction_numbers}
     for label, stated in friction_numbers.items():
-        file = file.with_values({label: stated.value}, stated.kind, stated.source)
+        file = file.with_values({label: stated.value}, stated.origin, stated.source)
     return NewJoint(file, found.facts, found.warnings())
 
 
-def _short_source(number: SourcedNumber) -> str:
+def _short_source(sourced_number: SourcedNumber) -> str:
     """Source of a number without the part in brackets."""
-    return number.source.split(" (", 1)[0]
+    return sourced_number.source.split(" (", 1)[0]
 
 
 def _catalogue_row(sourced_numbers: Mapping[str, SourcedNumber]) -> "CatalogueRow":

@@ -98,12 +98,12 @@ def _make_joint(options: DrawingOptions) -> NewJoint:
         file = _set_lost_motion(file, options["lost_motion"], source)
     joint = NewJoint(file, {})
     check_efficiency(options, joint)
-    guessed = ", ".join(sorted(n for n, number in numbers.items() if number.kind == "estimate"))
+    guessed = ", ".join(sorted(n for n, number in numbers.items() if number.origin == "estimate"))
     joint = replace(joint, facts=_drive_facts(joint), warnings=[f"estimated, not printed: {guessed}"])
     return joint if options["temperature"] is None else set_temperature(joint, options["temperature"])
 
 
-def _set_lost_motion(parameter_file: ParameterFile, lost_motion_text: str, source: str) -> ParameterFile:
+def _set_lost_motion(parameter_file: ParameterFile, lost_motion_text: str, publication: str) -> ParameterFile:
     """Set the parameter `lost_motion` so that the computed loop has the printed lost motion.
 
     lost_motion_text : printed lost motion as the user states it
@@ -130,7 +130,7 @@ def _set_lost_motion(parameter_file: ParameterFile, lost_motion_text: str, sourc
     high = printed
     while excess(high) < 0.0:
         high *= 2.0
-    text = f"{source}: {printed:.5g} rad between -3 % and +3 % of rated torque, less the elastic wind-up"
+    text = f"{publication}: {printed:.5g} rad between -3 % and +3 % of rated torque, less the elastic wind-up"
     play = float(brentq(excess, 0.0, high, rtol=LOST_MOTION_TOLERANCE))
     return parameter_file.with_values({"lost_motion": play}, "derived", text)
 

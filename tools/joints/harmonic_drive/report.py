@@ -134,10 +134,10 @@ def _find_catalogue_entry(parameter_file: ParameterFile) -> CatalogueEntry | Non
 
 
 def _comparison_rows(
-    model: Model, parameter_file: ParameterFile, entry: CatalogueEntry
+    model: Model, parameter_file: ParameterFile, catalogue_entry: CatalogueEntry
 ) -> Iterator[ComparisonRow]:
     """Rows that compare the numbers of a catalogue entry with the computed numbers of the drive."""
-    printed, spring = entry.numbers, HarmonicDriveSpring.tabulate(parameter_file.values)
+    printed, spring = catalogue_entry.numbers, HarmonicDriveSpring.tabulate(parameter_file.values)
     yield from _wind_up_rows(
         spring,
         printed,
@@ -148,7 +148,9 @@ def _comparison_rows(
         yield ComparisonRow(
             column, "rad", number.value, number.is_upper_limit, measured(spring), role, number.source
         )
-    known = [column for column in _FRICTION_UNITS if column in printed and printed[column].kind != "estimate"]
+    known = [
+        column for column in _FRICTION_UNITS if column in printed and printed[column].origin != "estimate"
+    ]
     bench = make_test_rig(model, parameter_file) if known else None
     for column in known:
         assert bench is not None
@@ -188,16 +190,18 @@ def _is_stiffness_from_catalogue(
 
 
 def _compute_friction_value(
-    test_rig: DriveTestRig, column: str, sourced_numbers: Mapping[str, SourcedNumber]
+    test_rig: DriveTestRig, friction_column: str, sourced_numbers: Mapping[str, SourcedNumber]
 ) -> float:
     """Computed value of a friction column: a torque [N.m] or the efficiency [1]."""
-    if column == "starting_torque":
+    if friction_column == "starting_torque":
         return test_rig.starting_torque()
-    if column == "running_torque":
+    if friction_column == "running_torque":
         return test_rig.motor_torque(CATALOGUE_MOTOR_SPEED, 0.0)
-    if column == "efficiency":
+    if friction_column == "efficiency":
         return test_rig.efficiency(CATALOGUE_MOTOR_SPEED, sourced_numbers["rated_torque"].value)
-    return test_rig.back_driving_torque(_MAX_BACK_DRIVING_OVER_RATED_TORQUE * sourced_numbers[column].value)
+    return test_rig.back_driving_torque(
+        _MAX_BACK_DRIVING_OVER_RATED_TORQUE * sourced_numbers[friction_column].value
+    )
 
 
 REPORT_FIGURES = {"HarmonicDriveSpring": friction_figures}

@@ -15,7 +15,7 @@ from ...exchange.robots.transmission import Transmission
 
 
 def make_transmission(parameter_file: ParameterFile) -> Transmission:
-    """Transmission of a robot with the spring and friction of a drive.
+    """Make the transmission of a robot with the spring and friction of a drive.
 
     Raises ValueError if the joint of the file is not a drive.
     """

@@ -71,6 +71,6 @@ def render_page() -> str:
     )
 
 
-def read_web_file(name: str) -> str:
+def read_web_file(file_name: str) -> str:
     """Read a source file of the page (template, style sheet, script) as text."""
-    return (_WEB_FOLDER / name).read_text(encoding="utf-8")
+    return (_WEB_FOLDER / file_name).read_text(encoding="utf-8")

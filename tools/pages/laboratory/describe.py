@@ -155,7 +155,7 @@ _PARAMETER_SLIDER_END_OVER_START = 10.0
 def describe_module(module: PageModule) -> dict[str, object]:
     """Describe a module of the page as a JSON object: all of its content except the WebAssembly binary."""
     model, first = module.model, module.parameter_files[0]
-    kind, bench = KINDS[model.joint], _laboratory_model(model)
+    kind, bench = KINDS[model.joint], _load_page_additions(model)
     bound = set(_list_compiled_parameters(first))
     curves = (*find_ramp_panels(model), *bench.panels)  # the panels of the documentation come first
     rows = [
@@ -201,8 +201,11 @@ def pair_conjugate_variables(model: Model) -> dict[str, str]:
     return conjugates
 
 
-def _laboratory_model(model: Model) -> LaboratoryModel:
-    """Additions to the page of a model, from the joint's module `laboratory`; empty if it defines none."""
+def _load_page_additions(model: Model) -> LaboratoryModel:
+    """Additions to the laboratory page of a model, from the module `laboratory` of its joint.
+
+    A model for which the module defines no additions has a default `LaboratoryModel`.
+    """
     module = load_tool_module(KINDS[model.joint], "laboratory")
     benches: dict[str, LaboratoryModel] = module.LABORATORY_MODELS if module else {}
     return benches.get(model.name, LaboratoryModel())
@@ -359,7 +362,7 @@ def _published_points(model: Model, laboratory_model: LaboratoryModel) -> Iterat
 def _contact_map_to_json(
     laboratory_model: LaboratoryModel, parameter_file: ParameterFile
 ) -> dict[str, object] | None:
-    """JSON object of the map over the contact; None if the joint has none."""
+    """JSON object of the map of a quantity (pressure) over the contact; None if there is no map."""
     picture = laboratory_model.contact_map
     if picture is None:
         return None

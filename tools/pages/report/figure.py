@@ -25,9 +25,9 @@ def page_script(*names: str) -> str:
     return chart.read_script("figures") + "".join(map(_read_asset, names))
 
 
-def _read_asset(name: str) -> str:
-    """Text of a file in the folder of this module."""
-    return Path(__file__).with_name(name).read_text(encoding="utf-8")
+def _read_asset(file_name: str) -> str:
+    """Read the text of a file in the folder of this module."""
+    return Path(__file__).with_name(file_name).read_text(encoding="utf-8")
 
 
 ROLE_PARAMETER_SOURCE, ROLE_INDEPENDENT, ROLE_PREDICTED = "set by it", "set independently", "predicted"
@@ -77,14 +77,14 @@ class Figure(NamedTuple):
     table: Sequence[Sequence[str]] = ()
 
 
-def published_series(points: Sequence[PublishedPoint], argument: str) -> list[Series]:
+def published_series(published_points: Sequence[PublishedPoint], argument: str) -> list[Series]:
     """Series of published numbers over an argument, one for each role.
 
     Marks are empty if numbers of this role are no independent check.
     """
     series = []
-    for role in dict.fromkeys(point.role for point in points):
-        chosen = [point for point in points if point.role == role]
+    for role in dict.fromkeys(point.role for point in published_points):
+        chosen = [point for point in published_points if point.role == role]
         x, y = [p.where[argument] for p in chosen], [float(p.value) for p in chosen]
         marks = "empty" if role in UNTESTED_ROLES else "full"
         series.append(Series(f"published: {ROLES[role]}", x, y, marks, titles=[p.id for p in chosen]))

@@ -40,17 +40,17 @@ _CONSTANT_STIFFNESS_RELATIVE_CHANGE = 0.02
 
 
 def summarise_joint(
-    load_history: LoadHistory, loops: HysteresisLoops | None, entries: Sequence[ParameterFileEntry]
+    load_history: LoadHistory, loops: HysteresisLoops | None, parameter_entries: Sequence[ParameterFileEntry]
 ) -> str:
     """Summarise a joint in a few sentences: stiffness, hysteresis, estimated parameters.
 
-    loops   : hysteresis loops; None for a joint without friction history
-    entries : entries of the parameter file
+    loops             : hysteresis loops; None for a joint without friction history
+    parameter_entries : entries of the parameter file
     """
     lines = [f"A {KINDS[load_history.file.joint].title}.", _describe_stiffness(load_history)]
     if loops:
         lines.append(_describe_energy_loss(loops))
-    count = Counter(entry.origin for entry in entries)
+    count = Counter(entry.origin for entry in parameter_entries)
     uncertain = [f"{count[kind]} {text}" for kind, text in _ESTIMATED_ORIGINS.items() if count[kind]]
     if uncertain:
         total = sum(count.values())
@@ -211,17 +211,17 @@ def _report_rows(parameter_file: ParameterFile) -> list[_ReportRow]:
     ]
 
 
-def _format_si_value(entry: ParameterFileEntry) -> str:
+def _format_si_value(parameter_entry: ParameterFileEntry) -> str:
     """Format the value of an entry in SI units.
 
     Empty if the display unit is the SI unit, or if there is no unit.
     """
-    if entry.unit is None or isinstance(entry.value, bool | str | tuple):
+    if parameter_entry.unit is None or isinstance(parameter_entry.value, bool | str | tuple):
         return ""
     return (
         ""
-        if choose_display_unit(entry.unit, entry.value) == entry.unit
-        else f"{entry.value:.12g} {format_unit(entry.unit)}"
+        if choose_display_unit(parameter_entry.unit, parameter_entry.value) == parameter_entry.unit
+        else f"{parameter_entry.value:.12g} {format_unit(parameter_entry.unit)}"
     )
 
 
@@ -235,9 +235,9 @@ def _to_display_unit(values: Any, unit: str) -> tuple[Any, str]:
 def _title_in_words(output_names: Sequence[str], over: str, variables: Mapping[str, Variable]) -> str:
     """Title of a panel by the meanings of its variables: "Normal stiffness over preload of each bolt"."""
 
-    def meaning(name: str) -> str:
+    def meaning(variable_name: str) -> str:
         """Meaning of a variable as the beginning of a title."""
-        return re.split(r"[,;:(]| -?d\w+/d", variables[name].doc)[0].strip()
+        return re.split(r"[,;:(]| -?d\w+/d", variables[variable_name].doc)[0].strip()
 
     quantities = ", ".join(dict.fromkeys(map(meaning, output_names)))
     return f"{quantities[0].upper()}{quantities[1:]} over {meaning(over)}"

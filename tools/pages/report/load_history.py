@@ -78,7 +78,7 @@ class LoadHistory:
         largest = loop.amplitude
 
         def force_range(amplitude: float) -> float:
-            """Range of the output force in a load cycle with an amplitude."""
+            """Largest minus smallest force [unit of the output] in a load cycle with an amplitude."""
             points = self.loop_inputs[loop.input_name] + np.array([0.0, amplitude])
             return float(
                 np.ptp(self._compute_along_path(loop.input_name, points, {}).columns[conjugate_output])
@@ -97,10 +97,10 @@ class LoadHistory:
             )
         return min(largest, float(f"{2.0 * high:.2g}"))
 
-    def _compute_along_path(self, name: str, points: Array, units: dict[str, str]) -> RampResult:
+    def _compute_along_path(self, input_name: str, input_values: Array, units: dict[str, str]) -> RampResult:
         """Compute the outputs along a path of one input, from rest."""
-        columns = self._engine.follow({**self.loop_inputs, name: points}).columns
-        read = (name, *(v.name for v in self.model.outputs))
+        columns = self._engine.follow({**self.loop_inputs, input_name: input_values}).columns
+        read = (input_name, *(v.name for v in self.model.outputs))
         return RampResult({key: columns[key] for key in read}, units, ())
 
     def _find_law_limit(self) -> tuple[float, str] | None:

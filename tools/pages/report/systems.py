@@ -28,17 +28,17 @@ _ENVELOPE_SIDES = ((1.0, "above"), (-1.0, "below"))
 
 
 def resonance_figures(
-    results: Mapping[str, Sequence[FreeVibration]], joint: str, folder: Path
+    vibrations_by_system: Mapping[str, Sequence[FreeVibration]], joint: str, fmu_folder: Path
 ) -> list[Figure]:
     """Resonance figures of all systems with a joint of this kind.
 
-    results : {system: results at each load}
-    folder  : folder with the FMUs (FMI 2.0)
+    vibrations_by_system : {system: results at each load}
+    fmu_folder           : folder with the FMUs (FMI 2.0)
     """
     return [
-        _resonance_figure(name, item, results[name], folder)
+        _resonance_figure(name, item, vibrations_by_system[name], fmu_folder)
         for name, item in _vibrating_systems(joint)
-        if name in results
+        if name in vibrations_by_system
     ]
 
 
@@ -48,18 +48,18 @@ def _vibrating_systems(joint: str) -> list[tuple[str, VibratingJoint]]:
 
 
 def _resonance_figure(
-    name: str, vibrating_joint: VibratingJoint, vibrations: Sequence[FreeVibration], folder: Path
+    system_name: str, vibrating_joint: VibratingJoint, vibrations: Sequence[FreeVibration], fmu_folder: Path
 ) -> Figure:
     """Figure of the resonance of one system over the load."""
     body, moving = vibrating_joint.vibration_test, vibrating_joint.moving_body.name
     return Figure(
-        f"In a system: resonance of the {name.replace('_', ' ')} over its {body.load_axis.name}",
+        f"In a system: resonance of the {system_name.replace('_', ' ')} over its {body.load_axis.name}",
         f"The {moving} vibrates freely about a working point, {body.support_description}. First chart: "
         "resonance frequency; "
         "circles are peaks of the spectrum of the simulated signal, the line is the square root of "
         f"{body.stiffness_output} over the inertia of the {moving}. Second chart: free decay at the first "
         f"{body.load_axis.name}, with the envelopes of the stated damping. Friction is left out.",
-        resonance_charts(vibrations, vibrating_joint, folder),
+        resonance_charts(vibrations, vibrating_joint, fmu_folder),
     )
 
 
@@ -72,7 +72,7 @@ def ring_down_figures(decays: Mapping[str, Sequence[Decay]], joint: str) -> list
     ]
 
 
-def _ring_down_figure(name: str, vibrating_joint: VibratingJoint, decays: Sequence[Decay]) -> Figure:
+def _ring_down_figure(system_name: str, vibrating_joint: VibratingJoint, decays: Sequence[Decay]) -> Figure:
     """Figure of the free decay of one system with a slipping joint."""
     body, moving, (point, *_) = vibrating_joint.vibration_test, vibrating_joint.moving_body.name, decays
     has_law = point.half_eta_loop is not None
@@ -81,7 +81,7 @@ def _ring_down_figure(name: str, vibrating_joint: VibratingJoint, decays: Sequen
         f"{format_unit(body.deflection_axis.unit)}"
     )
     return Figure(
-        f"In a system: free decay of the {name.replace('_', ' ')}",
+        f"In a system: free decay of the {system_name.replace('_', ' ')}",
         f"The {moving}, {body.support_description}, is released from a deflection of {deflection} "
         f"({body.deflection_for_slip.doc}) at "
         f"{body.load_axis.display_factor * point.load:g} {body.load_axis.unit}. Circles: frequency and "
@@ -100,13 +100,13 @@ def _ring_down_figure(name: str, vibrating_joint: VibratingJoint, decays: Sequen
 
 
 def resonance_charts(
-    vibrations: Sequence[FreeVibration], vibrating_joint: VibratingJoint, folder: Path
+    vibrations: Sequence[FreeVibration], vibrating_joint: VibratingJoint, fmu_folder: Path
 ) -> list[Panel]:
     """Charts: resonance over the load, and one free decay with the envelopes of the stated damping."""
     vibrations, body = sorted(vibrations, key=lambda point: point.load), vibrating_joint.vibration_test
     x = [body.load_axis.display_factor * point.load for point in vibrations]
     hertz = 0.5 / np.pi
-    loads, expected = frequency_curve(vibrating_joint, folder, vibrations)
+    loads, expected = frequency_curve(vibrating_joint, fmu_folder, vibrations)
     over = [
         Series("sqrt(K/J)", body.load_axis.display_factor * loads, hertz * expected),
         Series("simulated", x, [hertz * p.frequency for p in vibrations], "empty"),
@@ -188,13 +188,13 @@ def joint_load_outputs(system: System) -> dict[str, tuple[str, str]]:
     """Outputs of the joints that act as force or torque on the connected body: {joint: (output, unit)}."""
     outputs = {}
     for wire in find_signals(system):
-        if wire.source in system.joints:
-            variable = KINDS[system.joints[wire.source].joint_kind].variables[wire.output]
-            outputs[wire.source] = (f"{wire.source}.{wire.output}", variable.unit)
+        if wire.source_component in system.joints:
+            variable = KINDS[system.joints[wire.source_component].joint_kind].variables[wire.output]
+            outputs[wire.source_component] = (f"{wire.source_component}.{wire.output}", variable.unit)
     return outputs
 
 
-def wind_up_and_tip_error(system: System, results: SystemResults) -> tuple[Array, Array, Array]:
+def wind_up_and_tip_error(system: System, system_results: SystemResults) -> tuple[Array, Array, Array]:
     """Commanded angles and wind-up (times, axes) [rad] of an arm, and its tip error (times) [m].
 
     The tip error is the distance between the tip at the angles of the links and at the commanded angles.
@@ -203,39 +203,39 @@ def wind_up_and_tip_error(system: System, results: SystemResults) -> tuple[Array
     for name in system.arm.axis_names:
         drive = system.joints[f"{name}_drive"]
         assert drive.parameter_file
-        commanded.append(results[f"{name}_motor.phi"] / drive.parameter_file.values_by_name["ratio"])
-        links.append(results[f"{name}_link.phi"])
+        commanded.append(system_results[f"{name}_motor.phi"] / drive.parameter_file.values_by_name["ratio"])
+        links.append(system_results[f"{name}_link.phi"])
     q, real = np.stack(commanded, axis=1), np.stack(links, axis=1)
     error = np.linalg.norm(system.arm.tip_position(real) - system.arm.tip_position(q), axis=1)
     return q, real - q, error
 
 
-def _thin_series(name: str, time: Array, values: Array) -> Series:
+def _thin_series(series_name: str, time: Array, series_values: Array) -> Series:
     """Series with the smallest and the largest point of each of _PLOT_INTERVALS intervals."""
-    size = -(-values.size // _PLOT_INTERVALS)
-    intervals = [(k, values[k : k + size]) for k in range(0, values.size, size)]
+    size = -(-series_values.size // _PLOT_INTERVALS)
+    intervals = [(k, series_values[k : k + size]) for k in range(0, series_values.size, size)]
     indices = sorted({k + int(f(interval)) for k, interval in intervals for f in (np.argmin, np.argmax)})
-    return Series(name, time[indices], values[indices])
+    return Series(series_name, time[indices], series_values[indices])
 
 
-def system_charts(system: System, results: SystemResults) -> list[Panel]:
+def system_charts(system: System, system_results: SystemResults) -> list[Panel]:
     """Charts of the joint loads over time; for an arm also of wind-up and tip error."""
     over = "time [s]"
     outputs = joint_load_outputs(system)
     unit = " or ".join(dict.fromkeys(unit for _, unit in outputs.values()))
     curves = [
-        _thin_series(name.removesuffix("_drive"), results["time"], results[output])
+        _thin_series(name.removesuffix("_drive"), system_results["time"], system_results[output])
         for name, (output, _) in outputs.items()
     ]
     charts = [Panel("Loads of the joints", over, f"load [{unit}]", curves)]
     if system.arm:
-        _, wind_up, error = wind_up_and_tip_error(system, results)
+        _, wind_up, error = wind_up_and_tip_error(system, system_results)
         curves = [
-            _thin_series(name, results["time"], 1e3 * values)
+            _thin_series(name, system_results["time"], 1e3 * values)
             for name, values in zip(system.arm.axis_names, wind_up.T, strict=True)
         ]
         charts.append(Panel("Wind-up of the drives", over, "wind-up [mrad]", curves))
-        tip = [_thin_series("tip", results["time"], 1e3 * error)]
+        tip = [_thin_series("tip", system_results["time"], 1e3 * error)]
         charts.append(Panel("Error of the tip", over, "error [mm]", tip))
     return charts
 
@@ -249,9 +249,9 @@ def motion_figures(results_by_system: Mapping[str, tuple[System, SystemResults]]
     ]
 
 
-def _motion_figure(system: System, results: SystemResults) -> Figure:
+def _motion_figure(system: System, system_results: SystemResults) -> Figure:
     """Figure of the simulated motion of an arm."""
-    _, wind_up, error = wind_up_and_tip_error(system, results)
+    _, wind_up, error = wind_up_and_tip_error(system, system_results)
     (largest, worst) = np.max(np.abs(wind_up), axis=0), float(np.max(error))
     soft = system.arm.axis_names[int(np.argmax(largest))]
     return Figure(
@@ -262,5 +262,5 @@ def _motion_figure(system: System, results: SystemResults) -> Figure:
         f"{1e3 * error[-1]:.2f} mm at the end, under the weight. The {soft} has the largest wind-up, "
         f"{1e3 * np.max(largest):.2f} mrad. The links are coupled, with weight, Coriolis and gyroscopic "
         "terms.",
-        system_charts(system, results),
+        system_charts(system, system_results),
     )

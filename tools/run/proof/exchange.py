@@ -41,7 +41,7 @@ def run_fmpy_exchange(experiment_task: ExperimentTask, messages: list[str]) -> O
         read_description(experiment_task.fmu),
         experiment_task.fmu,
         messages,
-        model_exchange=True,
+        uses_model_exchange=True,
     ) as instance:
         instance.enter_initialization(experiment_task.times[0])
         instance.set_values({**experiment_task.settings, **experiment_task.inputs_at(0)})
@@ -148,7 +148,7 @@ class _ExchangeSimulation:
         return left_limits != new
 
     def _set_time(self, time: float) -> None:
-        """Set the time [s] and the continuous inputs of the FMU."""
+        """Set the time [s] of the FMU, and its continuous inputs to their values at this time."""
         self.fmu.setTime(time)
         i = self.interval_index
         begin, end = self.task.times[i : i + 2]
@@ -158,31 +158,33 @@ class _ExchangeSimulation:
             value = first if first == last else (1.0 - fraction) * first + fraction * last
             self.instance.set_values({name: value})
 
-    def _write_state_nominals(self, solver_array: object, state_count: int) -> None:
+    def _write_state_nominals(self, nominals_array: object, state_count: int) -> None:
         """Write the nominal values of the states times MIN_SCALE_OVER_NOMINAL.
 
         Below these values, tolerances are absolute.
 
-        solver_array, state_count : array of the solver to be filled, and its length
+        nominals_array, state_count : array of the solver to be filled, and its length
         """
-        self.fmu.getNominalsOfContinuousStates(solver_array, state_count)
-        np.ctypeslib.as_array(solver_array, (state_count,))[:] *= MIN_SCALE_OVER_NOMINAL
+        self.fmu.getNominalsOfContinuousStates(nominals_array, state_count)
+        np.ctypeslib.as_array(nominals_array, (state_count,))[:] *= MIN_SCALE_OVER_NOMINAL
 
-    def _c_callback(self, name: str) -> Callable[..., None]:
+    def _c_callback(self, function_name: str) -> Callable[..., None]:
         """Make a solver callback of a C function of the FMU; its first failure is kept in `first_failure`.
 
         The function is called directly, because fmpy's wrapper takes longer than most laws.
         """
         from fmpy.fmi1 import FMICallException, fmi1Warning
 
-        name = f"fmi{self.instance.version}{name}"
-        function, component = getattr(self.fmu.dll, name), self.fmu.component
+        function_name = f"fmi{self.instance.version}{function_name}"
+        function, component = getattr(self.fmu.dll, function_name), self.fmu.component
 
         def call(*arguments: object) -> None:
             """Call the C function; store its first failure."""
             status = function(component, *arguments)
             if status > fmi1Warning:
-                self.first_failure = self.first_failure or FMICallException(function=name, status=status)
+                self.first_failure = self.first_failure or FMICallException(
+                    function=function_name, status=status
+                )
 
         return call
 

@@ -109,7 +109,7 @@ def _time_range(experiment: Experiment) -> tuple[float, float]:
 def _make_listing_files(
     proof: Proof, outcome: ExperimentOutcome, description: "ModelDescription"
 ) -> dict[str, bytes]:
-    """{name: content} of the files that describe one experiment in the list of FMI tools."""
+    """Make {name: content} of the files that describe one experiment in the list of FMI tools."""
     experiment, name = outcome.experiment, _safe_file_name(description.modelName)
     assert experiment.references is not None
     start, stop = _time_range(experiment)

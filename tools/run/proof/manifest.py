@@ -94,7 +94,7 @@ class RelatedFiles:
             )
 
     def read_experiments(self) -> list[Experiment]:
-        """All experiments that the manifest names, in the order of the manifest."""
+        """Read all experiments that the manifest names, in the order of the manifest."""
         with self._fmu_members.open_for_reading():
             return self._read_all_experiments()
 
@@ -129,7 +129,7 @@ class RelatedFiles:
             raise ValueError(f"{self.fmu}: {path} {error}") from None
 
     def _read_experiments(self, file_element: Element, purpose: str) -> list[Experiment]:
-        """Experiments in a related file of the FMU.
+        """Read the experiments in a related file of the FMU.
 
         A file of an unsupported type gives one experiment that states why it cannot be executed.
         """
@@ -151,7 +151,7 @@ class RelatedFiles:
     def _read_experiment(
         self, path: str, element: Element, purpose: str, interfaces: Sequence[str]
     ) -> Experiment:
-        """Experiment of an XML element in the file `path`, with the files that it names."""
+        """Read the experiment of an XML element in the file `path`, with the files that it names."""
         name = element.get("name", "")
         kinds = [
             child.tag for child in element if child.tag not in ("Annotations", *_RELATED_FILE_MIME_TYPES)
@@ -211,7 +211,7 @@ class RelatedFiles:
             raise ValueError(text) from None
 
     def _read_settings(self, path: str) -> dict[str, StartSetting]:
-        """Start values of an SSV file, {variable: start value}."""
+        """Read the start values of an SSV file, {variable: start value}."""
         settings = {}
         for parameter in self._read_xml(path).iter(f"{{{SSV_NAMESPACE}}}Parameter"):
             name = parameter.get("name", "")
@@ -225,13 +225,13 @@ class RelatedFiles:
         return settings
 
     def _resolve_path(self, base_member: str, source_address: str) -> str:
-        """Path in the FMU of a source address, which is relative to the file `base_member` in the FMU."""
+        """Resolve a source address relative to the file `base_member` in the FMU, to a path in the FMU."""
         if urlsplit(source_address).scheme:
             raise ValueError(f"{self.fmu}: {base_member} names {source_address}; expected a file in the FMU")
         return posixpath.normpath(posixpath.join(posixpath.dirname(base_member), unquote(source_address)))
 
     def _read_text(self, path: str) -> str:
-        """Text of a related file of the FMU."""
+        """Read the text of a related file of the FMU."""
         if path not in self.members:
             raise ValueError(f"{self.fmu}: has no {path}, which its manifest or an experiment names")
         try:
@@ -240,7 +240,7 @@ class RelatedFiles:
             raise ValueError(f"{self.fmu}: {path} is not a text; expected UTF-8") from None
 
     def _read_xml(self, path: str) -> Element:
-        """XML root element of a related file of the FMU."""
+        """Read the XML root element of a related file of the FMU."""
         try:
             return ElementTree.fromstring(self._read_text(path))
         except ElementTree.ParseError as error:

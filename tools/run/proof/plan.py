@@ -48,9 +48,14 @@ class ExperimentPlan:
 
     @classmethod
     def plan_experiment(
-        cls, fmu: Path, folder: str, experiment: Experiment, interface: str, description: "ModelDescription"
+        cls,
+        fmu: Path,
+        fmu_folder: str,
+        experiment: Experiment,
+        interface: str,
+        description: "ModelDescription",
     ) -> "ExperimentPlan":
-        """Plan an experiment with an FMU that is unpacked in `folder`."""
+        """Plan an experiment with an FMU that is unpacked in `fmu_folder`."""
         if not interface:
             return cls(experiment, interface, {}, {})
         variables = {v.name: v for v in description.modelVariables}
@@ -83,7 +88,7 @@ class ExperimentPlan:
         if experiment.references:
             values["comparison_times"] = experiment.references.time.tolist()
         nominal = {n: abs(float(getattr(variables[n], "nominal", None) or 1.0)) for n in outputs}
-        return cls(experiment, interface, nominal, make_task_fields(fmu, folder, interface, **values))
+        return cls(experiment, interface, nominal, make_task_fields(fmu, fmu_folder, interface, **values))
 
     def evaluate_importer_answer(self, importer_answer: Mapping[str, Any] | None) -> ExperimentOutcome:
         """Compare the answer of an importer with the reference results of the experiment.
@@ -158,7 +163,7 @@ def _communication_points(experiment: Experiment, description: "ModelDescription
 
 
 def make_task_fields(fmu: Path, folder: str, interface: str, **other_fields: object) -> dict[str, object]:
-    """Fields of an `ExperimentTask`, as a JSON object."""
+    """Make the fields of an `ExperimentTask`, as a JSON object."""
     return {"fmu": str(fmu), "folder": str(folder), "interface": interface, **other_fields}
 
 

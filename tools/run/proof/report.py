@@ -117,17 +117,17 @@ def _experiment_to_json(outcome: ExperimentOutcome) -> dict[str, object]:
     }
 
 
-def _worst_point_to_json(point: WorstPoint) -> Mapping[str, object]:
+def _worst_point_to_json(worst_point: WorstPoint) -> Mapping[str, object]:
     """Point of an output with the largest error over tolerance, as a JSON object."""
-    value = point.computed_value if point.is_finite else None
+    value = worst_point.computed_value if worst_point.is_finite else None
     return {
-        "output": point.output,
-        "time": point.time,
+        "output": worst_point.output,
+        "time": worst_point.time,
         "value": value,
-        "reference": point.reference_value,
-        "error": None if value is None else point.absolute_error,
-        "allowed": point.tolerance,
-        "passed": point.is_within_tolerance,
+        "reference": worst_point.reference_value,
+        "error": None if value is None else worst_point.absolute_error,
+        "allowed": worst_point.tolerance,
+        "passed": worst_point.is_within_tolerance,
     }
 
 
@@ -140,7 +140,11 @@ def _format_verdict(outcome: ExperimentOutcome) -> str:
     return "passed" if outcome.worst_points else "runs, no reference"
 
 
-def _format_worst_point_cells(point: WorstPoint) -> tuple[str, ...]:
+def _format_worst_point_cells(worst_point: WorstPoint) -> tuple[str, ...]:
     """Cells of a table row: time, value, reference, error and tolerance of a point."""
-    numbers = (f"{point.time:g}", f"{point.computed_value:.10g}", f"{point.reference_value:.10g}")
-    return (*numbers, f"{point.absolute_error:.1e}", f"{point.tolerance:.1e}")
+    numbers = (
+        f"{worst_point.time:g}",
+        f"{worst_point.computed_value:.10g}",
+        f"{worst_point.reference_value:.10g}",
+    )
+    return (*numbers, f"{worst_point.absolute_error:.1e}", f"{worst_point.tolerance:.1e}")

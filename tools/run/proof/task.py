@@ -77,7 +77,7 @@ ExecuteFunction = Callable[[ExperimentTask, list[str]], OutputRows]
 
 
 def make_output_reader(instance: Instance, outputs: Sequence[str]) -> Callable[[], list[float]]:
-    """Function that reads the outputs of an instance; if all are real variables, in one call."""
+    """Make the function that reads the outputs of an instance; if all are real variables, in one call."""
     if all(instance.variables[name].type in REAL_TYPES for name in outputs):
         return instance.group_real_variables(outputs).get_values
     return lambda: [float(instance.get_value(name)) for name in outputs]

@@ -90,7 +90,7 @@ def has_start_value(variable: "ScalarVariable") -> bool:
 
 
 def read_start_value(variable: "ScalarVariable") -> float | int | bool:
-    """Start value of a variable in modelDescription.xml, converted to its type."""
+    """Read the start value of a variable in modelDescription.xml, converted to its type."""
     text = str(variable.start)
     if variable.type == "Boolean":
         return text in ("true", "1")

@@ -40,35 +40,38 @@ MAX_RAMP_END = 1e12
 """Largest magnitude of the input at the end of a ramp [SI]."""
 
 
-def ramp_points(end: float, step: float) -> Array:
+def ramp_points(end_value: float, value_step: float) -> Array:
     """Points of a load ramp: 0, step, 2 step, ..., end; the last step may be shorter.
 
     Raises ValueError if a value is not finite, if |end| is above MAX_RAMP_END, or if the step is zero or has
-    the other sign than `end`.
+    the other sign than `end_value`.
     """
-    for name, value in (("to", end), ("step", step)):
+    for name, value in (("to", end_value), ("step", value_step)):
         if not np.isfinite(value):
             raise ValueError(f"{name} = {value:g} is outside (-inf, inf): must be finite")
-    if abs(end) > MAX_RAMP_END:
+    if abs(end_value) > MAX_RAMP_END:
         raise ValueError(
-            f"to = {end:g} is outside [-{MAX_RAMP_END:g}, {MAX_RAMP_END:g}] (SI): limit for loads and motions"
+            f"to = {end_value:g} is outside [-{MAX_RAMP_END:g}, {MAX_RAMP_END:g}] (SI): "
+            "limit for loads and motions"
         )
-    if step == 0.0 or end / step < 0.0:
-        allowed = "(-inf, 0)" if end < 0.0 else "(0, inf)"
-        raise ValueError(f"step = {step:g} is outside {allowed}: steps must lead from 0 to {end:g}")
-    count = end / step
+    if value_step == 0.0 or end_value / value_step < 0.0:
+        allowed = "(-inf, 0)" if end_value < 0.0 else "(0, inf)"
+        raise ValueError(
+            f"step = {value_step:g} is outside {allowed}: steps must lead from 0 to {end_value:g}"
+        )
+    count = end_value / value_step
     if count > 1e7:
-        raise ValueError(f"step = {step:g} makes {count:.3g} points, allowed are 1e7")
-    whole = np.arange(int(np.floor(count * (1.0 + 1e-12))) + 1) * step + 0.0
-    reached = bool(np.isclose(whole[-1], end, rtol=1e-12, atol=0.0))
-    return np.asarray(whole if reached else np.append(whole, end), dtype=np.float64)
+        raise ValueError(f"step = {value_step:g} makes {count:.3g} points, allowed are 1e7")
+    whole = np.arange(int(np.floor(count * (1.0 + 1e-12))) + 1) * value_step + 0.0
+    reached = bool(np.isclose(whole[-1], end_value, rtol=1e-12, atol=0.0))
+    return np.asarray(whole if reached else np.append(whole, end_value), dtype=np.float64)
 
 
 def run_ramp(
     fmu: str | Path,
     input_name: str,
-    end: float,
-    step: float,
+    end_value: float,
+    value_step: float,
     settings: Mapping[str, object] | None = None,
 ) -> RampResult:
     """Run an FMU along a ramp of one input from zero, with one step of one second for each point.
@@ -77,25 +80,25 @@ def run_ramp(
 
     Parameters
     ----------
-    fmu        : path of a co-simulation FMU, FMI 2.0 or 3.0
+    fmu : path of a co-simulation FMU, FMI 2.0 or 3.0
     input_name : name of the varied input
-    end, step  : [unit of the input] end and step of the ramp
-    settings   : start values of parameters and other inputs
+    end_value, value_step : [unit of the input] end and step of the ramp
+    settings : start values of parameters and other inputs
 
     Raises
     ------
-    ValueError   : the FMU cannot run here (see `host.unpack_fmu`, `host.open_instance`), a name is unknown, a
+    ValueError : the FMU cannot run here (see `host.unpack_fmu`, `host.open_instance`), a name is unknown, a
         value is impossible, or the FMU rejects a value (with the message of the FMU)
     RuntimeError : the FMU does not instantiate
     """
-    return run_path(fmu, input_name, ramp_points(end, step), settings)
+    return run_path(fmu, input_name, ramp_points(end_value, value_step), settings)
 
 
 def run_path(
-    fmu: str | Path, input_name: str, points: Array, settings: Mapping[str, object] | None = None
+    fmu: str | Path, input_name: str, input_values: Array, settings: Mapping[str, object] | None = None
 ) -> RampResult:
     """Run an FMU along points (n) of one input, with one step of one second each. Raises as `run_ramp`."""
-    return run_paths(fmu, {input_name: points}, None, settings)
+    return run_paths(fmu, {input_name: input_values}, None, settings)
 
 
 def run_paths(
@@ -140,7 +143,7 @@ def variable_units(fmu: str | Path) -> dict[str, str]:
 
 
 def _simulate_paths(
-    folder: str,
+    fmu_folder: str,
     model_description: "ModelDescription",
     inputs: Mapping[str, Array],
     time: Array,
@@ -167,7 +170,7 @@ def _simulate_paths(
     messages: list[str] = []
     rows: list[list[float]] = []
     points = np.stack([*inputs.values()], axis=-1) if inputs else np.empty((time.size, 0))
-    with open_instance(folder, model_description, fmu_label, messages) as fmu:
+    with open_instance(fmu_folder, model_description, fmu_label, messages) as fmu:
         try:
             fmu.enter_initialization()
             fmu.set_values({**settings, **dict(zip(inputs, points[0].tolist(), strict=True))})

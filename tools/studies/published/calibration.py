@@ -48,7 +48,7 @@ def fit_unknowns(
     source = "fitted to " + ", ".join(point.id for point in calibration_points)
 
     def make_parameter_file(log_unknowns: Any) -> ParameterFile:
-        """Parameter file with values of the unknowns, from their logarithms."""
+        """Make the parameter file with values of the unknowns, from their logarithms."""
         values = dict(zip(names, np.exp(log_unknowns).tolist(), strict=True))
         return start_file.with_values(values, "calibration", source)
 

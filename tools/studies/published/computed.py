@@ -13,7 +13,7 @@ from ...common.joint_parts import load_tool_module
 
 @dataclass(frozen=True, slots=True)
 class CalibrationFit:
-    """Fit of parameters that a paper does not state to its published numbers (calibration points).
+    """Fit to calibration points: parameters that a paper does not state are fitted to its published numbers.
 
     unknowns  : {parameter: start value > 0}; their logarithms are fitted, so they stay positive
     point_ids : ids of the calibration points, as many as unknowns
@@ -39,7 +39,7 @@ class PublishedNumbers:
 
 
 def load_published_numbers(joint_kind: JointKind) -> PublishedNumbers:
-    """Published numbers that a joint defines; without papers if it defines none."""
+    """Import the published numbers that a joint defines; the result has no papers if it defines none."""
     own: PublishedNumbers = getattr(
         load_tool_module(joint_kind, "published"), "PUBLISHED_NUMBERS", PublishedNumbers()
     )

@@ -69,7 +69,7 @@ def _stick_sum(
     return float(quad(integrand, 0.0, log(high / onset) ** (1.0 / 3.0), **_QUADRATURE)[0])
 
 
-def _zhao2018(p: Parameters, largest: float) -> dict[str, float]:
+def _evaluate_zhao2018(p: Parameters, largest: float) -> dict[str, float]:
     """Quantities of Zhao 2018 at the truncated area a'_L [m2] of the largest spot."""
     D, G, H, x = p["surface.D"], p["surface.G"], p["H"], p["traction_ratio"]
     root = sqrt(log(p["surface.gamma"]))
@@ -153,7 +153,7 @@ def _zhao2018(p: Parameters, largest: float) -> dict[str, float]:
     }
 
 
-def _hu2023(p: Parameters, largest: float) -> dict[str, float]:
+def _evaluate_hu2023(p: Parameters, largest: float) -> dict[str, float]:
     """Quantities of Hu 2023 at the area s_l [m2] of the largest spot."""
     D, s_min, A_0 = p["surface.D"], p["surface.s_min"], p["A_0"]
     E, shear = _bodies(p)
@@ -240,7 +240,7 @@ def _hu2023(p: Parameters, largest: float) -> dict[str, float]:
     }
 
 
-def _yu2022(p: Parameters, largest: float) -> dict[str, float]:
+def _evaluate_yu2022(p: Parameters, largest: float) -> dict[str, float]:
     """Quantities of Yu 2022 at the real area a_l [m2] of the largest spot."""
     e, root = p["e"], sqrt(log(p["surface.gamma"]))
     compliance = (1.0 - p["side1.nu"] ** 2) / p["side1.E"]
@@ -273,9 +273,9 @@ def _yu2022(p: Parameters, largest: float) -> dict[str, float]:
         """Area of a spot over the area at which a spot of its curvature yields first [1]."""
         return a / (f1 * pi * radius(a) * yield_deformation(a))
 
-    def stage_end_area(limit: float) -> float:
+    def stage_end_area(max_area_ratio: float) -> float:
         """Spot area [m2] at which `area_ratio` reaches a limit: the end of a stage."""
-        return exp(brentq(lambda t: log(area_ratio(exp(t)) / limit), -250.0, 250.0, xtol=1e-13))
+        return exp(brentq(lambda t: log(area_ratio(exp(t)) / max_area_ratio), -250.0, 250.0, xtol=1e-13))
 
     geometric = p["plastic_area"] == "geometric"
     (m1, n1, *_), (m2, n2, *_) = _FIRST_STAGE, _SECOND_STAGE
@@ -316,11 +316,13 @@ def _yu2022(p: Parameters, largest: float) -> dict[str, float]:
     }
 
 
-def _roughness(p: Parameters, pressure: float) -> dict[str, float]:
+def _evaluate_roughness(parameters: Parameters, pressure: float) -> dict[str, float]:
     """Quantities of the law `roughness` at a nominal pressure [Pa]."""
-    E, shear = _bodies(p)
-    h, gamma, wave, hurst, A_0, H = (p[n] for n in ("h", "gamma", "longest_wave", "hurst", "A_0", "H"))
-    mu, x = p["mu"], p["traction_ratio"]
+    E, shear = _bodies(parameters)
+    h, gamma, wave, hurst, A_0, H = (
+        parameters[n] for n in ("h", "gamma", "longest_wave", "hurst", "A_0", "H")
+    )
+    mu, x = parameters["mu"], parameters["traction_ratio"]
 
     def stiffness(pressure: float) -> float:
         """Normal stiffness [N/m] of the nominal area at a pressure [Pa]."""
@@ -329,7 +331,7 @@ def _roughness(p: Parameters, pressure: float) -> dict[str, float]:
 
     # Persson's diffusion of the pressure between the walls 0 and H, by 400 modes
     n = np.arange(1, 401)
-    decay = 2.0 / (n * pi) * np.exp(-0.5 * (n * pi * E * p["slope"] / (2.0 * H)) ** 2)
+    decay = 2.0 / (n * pi) * np.exp(-0.5 * (n * pi * E * parameters["slope"] / (2.0 * H)) ** 2)
     mode = decay * np.sin(n * pi * pressure / H)
     elastic, elastic_load = float(np.sum(mode[::2]) * 2.0), float(-np.sum((-1.0) ** n * mode))
     plastic = max(pressure / H - elastic_load, 0.0)
@@ -356,7 +358,7 @@ def _roughness(p: Parameters, pressure: float) -> dict[str, float]:
     }
 
 
-def _interface_table(p: Parameters, pressure: float) -> dict[str, float]:
+def _evaluate_interface_table(p: Parameters, pressure: float) -> dict[str, float]:
     """Quantities of the interface law `table` at a nominal pressure [Pa]."""
     u, y = np.log(p["table.pressure"]), np.log(p["table.stiffness"])
     chords = np.diff(y) / np.diff(u)
@@ -384,7 +386,7 @@ def _interface_table(p: Parameters, pressure: float) -> dict[str, float]:
     }
 
 
-def _catalogue_drive(p: Parameters, wind_up: float) -> dict[str, float]:
+def _evaluate_catalogue_drive(p: Parameters, wind_up: float) -> dict[str, float]:
     """Torque [N.m] and stiffness [N.m/rad] of a catalogue drive at a wind-up [rad]."""
     first = p["T1"] / p["K1"]
     second = first + (p["T2"] - p["T1"]) / p["K2"]
@@ -403,7 +405,7 @@ def _catalogue_drive(p: Parameters, wind_up: float) -> dict[str, float]:
     return {"wind_up": wind_up, "tau": torque, "K_WTS": stiffness(wind_up)}
 
 
-def _measured_drive(p: Parameters, wind_up: float) -> dict[str, float]:
+def _evaluate_measured_drive(p: Parameters, wind_up: float) -> dict[str, float]:
     """Torque [N.m] and stiffness [N.m/rad] of a drive with a measured torque-angle table, at a wind-up [rad].
 
     The curve is a quintic Hermite spline. The stiffnesses at the points are those of PCHIP; where it stays
@@ -505,20 +507,30 @@ _TABLE = {
 _Case = tuple[str, Callable[[Parameters, float], dict[str, float]], Parameters, Sequence[float]]
 """Case of the reference table: law, function, parameters, arguments."""
 _CASES: Sequence[_Case] = (
-    ("zhao2018", _zhao2018, _ZHAO, (4e-9, 2e-8, 1e-6, 1e-4)),
-    ("zhao2018", _zhao2018, _ZHAO | {"critical_area": "printed"}, (3e-6, 1e-4)),
-    ("zhao2018", _zhao2018, _ZHAO | {"critical_area": "yield", "spot_stiffness": "family"}, (3e-5, 1e-3)),
-    ("hu2023", _hu2023, _HU, (1e-14, 1e-12, 1e-10, 1e-8)),
-    ("hu2023", _hu2023, _HU | {"traction": "real_area"}, (1e-12, 1e-10, 1e-8)),
-    ("hu2023", _hu2023, _HU | {"reading": "printed"}, (1e-14, 1e-12)),
-    ("hu2023", _hu2023, _HU | {"reading": "printed", "traction": "real_area"}, (1e-12, 1e-10)),
-    ("yu2022", _yu2022, _YU, (1e-12, 1e-10, 1e-7, 1e-4)),
-    ("yu2022", _yu2022, _YU | {"rigid_flat": False, "plastic_area": "kogut_etsion", "e": 0.5}, (1e-10, 1e-7)),
-    ("roughness", _roughness, _ROUGHNESS, (1e4, 1e6, 1e8)),
-    ("roughness", _roughness, _ROUGHNESS | {"slope": 0.02}, (1e6, 1e8)),
-    ("table", _interface_table, _INTERFACE_TABLE, (1e4, 3e5, 8e5, 2e6, 1e7, 5e7)),
-    ("catalogue", _catalogue_drive, _CATALOGUE, (2e-4, 4.2e-4, 9e-4, 1.2e-3, 2e-3)),
-    ("table", _measured_drive, _TABLE, (2.2e-4, 3e-4, 9e-4, 1.2e-3, 1.5e-3)),
+    ("zhao2018", _evaluate_zhao2018, _ZHAO, (4e-9, 2e-8, 1e-6, 1e-4)),
+    ("zhao2018", _evaluate_zhao2018, _ZHAO | {"critical_area": "printed"}, (3e-6, 1e-4)),
+    (
+        "zhao2018",
+        _evaluate_zhao2018,
+        _ZHAO | {"critical_area": "yield", "spot_stiffness": "family"},
+        (3e-5, 1e-3),
+    ),
+    ("hu2023", _evaluate_hu2023, _HU, (1e-14, 1e-12, 1e-10, 1e-8)),
+    ("hu2023", _evaluate_hu2023, _HU | {"traction": "real_area"}, (1e-12, 1e-10, 1e-8)),
+    ("hu2023", _evaluate_hu2023, _HU | {"reading": "printed"}, (1e-14, 1e-12)),
+    ("hu2023", _evaluate_hu2023, _HU | {"reading": "printed", "traction": "real_area"}, (1e-12, 1e-10)),
+    ("yu2022", _evaluate_yu2022, _YU, (1e-12, 1e-10, 1e-7, 1e-4)),
+    (
+        "yu2022",
+        _evaluate_yu2022,
+        _YU | {"rigid_flat": False, "plastic_area": "kogut_etsion", "e": 0.5},
+        (1e-10, 1e-7),
+    ),
+    ("roughness", _evaluate_roughness, _ROUGHNESS, (1e4, 1e6, 1e8)),
+    ("roughness", _evaluate_roughness, _ROUGHNESS | {"slope": 0.02}, (1e6, 1e8)),
+    ("table", _evaluate_interface_table, _INTERFACE_TABLE, (1e4, 3e5, 8e5, 2e6, 1e7, 5e7)),
+    ("catalogue", _evaluate_catalogue_drive, _CATALOGUE, (2e-4, 4.2e-4, 9e-4, 1.2e-3, 2e-3)),
+    ("table", _evaluate_measured_drive, _TABLE, (2.2e-4, 3e-4, 9e-4, 1.2e-3, 1.5e-3)),
 )
 """(law, function, parameters, arguments of the function) of each case; every choice of a law has one."""
 _HEAD = """\

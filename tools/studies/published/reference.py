@@ -127,18 +127,18 @@ def read_points(paper: str) -> list[PublishedPoint]:
     return [_make_point(paper, document["joint"], entry) for entry in document["point"]]
 
 
-def _make_point(paper: str, joint: str, entry: dict[str, Any]) -> PublishedPoint:
-    """Published number from its entry in the file of a paper."""
-    guess = {"guess": Guess(**entry["guess"])} if "guess" in entry else {}
-    return PublishedPoint(paper=paper, joint=joint, **(entry | guess))
+def _make_point(paper: str, joint: str, point_entry: dict[str, Any]) -> PublishedPoint:
+    """Make the published number from its entry in the file of a paper."""
+    guess = {"guess": Guess(**point_entry["guess"])} if "guess" in point_entry else {}
+    return PublishedPoint(paper=paper, joint=joint, **(point_entry | guess))
 
 
-def compute_trivial_guesses(points: Sequence[PublishedPoint]) -> dict[str, float]:
+def compute_trivial_guesses(published_points: Sequence[PublishedPoint]) -> dict[str, float]:
     """Trivial guesses of the published numbers of one paper, from calibration points: {id: guess}.
 
     Raises ValueError if a guess names a point that is no calibration point and has no guess.
     """
-    known = {p.id: p for p in points}
+    known = {p.id: p for p in published_points}
 
     def find_value(point_id: str, requesting_ids: tuple[str, ...]) -> float:
         """Value of a calibration point, or the guess of another point."""
@@ -151,16 +151,20 @@ def compute_trivial_guesses(points: Sequence[PublishedPoint]) -> dict[str, float
             )
         return evaluate_guess(point, point.guess, (*requesting_ids, point_id))
 
-    def evaluate_guess(point: PublishedPoint, rule: Guess, requesting_ids: tuple[str, ...]) -> float:
+    def evaluate_guess(
+        published_point: PublishedPoint, guess: Guess, requesting_ids: tuple[str, ...]
+    ) -> float:
         """Trivial guess of a published number by a rule, for example the power law through two points."""
-        a, *more = (find_value(name, requesting_ids) for name in rule.points)
-        if rule.rule in _POWER_LAW_GUESS_RULES:
-            x, x_a, *others = (p.where[rule.over] for p in (point, *(known[name] for name in rule.points)))
+        a, *more = (find_value(name, requesting_ids) for name in guess.points)
+        if guess.rule in _POWER_LAW_GUESS_RULES:
+            x, x_a, *others = (
+                p.where[guess.over] for p in (published_point, *(known[name] for name in guess.points))
+            )
             (y, z), (x_y, x_z) = (a, *more)[-2:], (x_a, *others)[-2:]
             power = np.log(z / y) / np.log(x_z / x_y)
             return float(a * (x / x_a) ** power)
-        if rule.rule == "offset":
+        if guess.rule == "offset":
             return a + more[0] - more[1]
-        return a * more[0] / more[1] if rule.rule == "proportion" else a
+        return a * more[0] / more[1] if guess.rule == "proportion" else a
 
-    return {p.id: evaluate_guess(p, p.guess, (p.id,)) for p in points if p.guess}
+    return {p.id: evaluate_guess(p, p.guess, (p.id,)) for p in published_points if p.guess}

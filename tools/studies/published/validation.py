@@ -77,20 +77,25 @@ class ValidatedPoint:
 
 
 def compare_point(
-    point: PublishedPoint, computed_value: float | bool, guess: float | None = None
+    published_point: PublishedPoint, computed_value: float | bool, guess: float | None = None
 ) -> ValidatedPoint:
     """Compare a computed value, and the trivial guess if there is one, with the published number."""
-    if isinstance(point.value, bool):
-        error = float(computed_value is not point.value)
-        return ValidatedPoint(point, computed_value, error, error == 0.0)
-    error = _point_error(point, computed_value)
-    guessed = None if guess is None else _point_error(point, guess)
-    return ValidatedPoint(point, computed_value, error, abs(error) <= point.tolerance, guess, guessed)
+    if isinstance(published_point.value, bool):
+        error = float(computed_value is not published_point.value)
+        return ValidatedPoint(published_point, computed_value, error, error == 0.0)
+    error = _point_error(published_point, computed_value)
+    guessed = None if guess is None else _point_error(published_point, guess)
+    return ValidatedPoint(
+        published_point, computed_value, error, abs(error) <= published_point.tolerance, guess, guessed
+    )
 
 
-def _point_error(point: PublishedPoint, value: float) -> float:
-    """Error of a computed or guessed value: relative [1], or absolute in the unit of the published number."""
-    return (value - point.value) / (1.0 if point.absolute else abs(point.value))
+def _point_error(published_point: PublishedPoint, value: float) -> float:
+    """Error of a value with respect to a published number.
+
+    The error is relative [1], or, if `point.absolute` is True, in the unit of the published number.
+    """
+    return (value - published_point.value) / (1.0 if published_point.absolute else abs(published_point.value))
 
 
 def validate(parameter_sets: Mapping[str, ParameterFile] | None = None) -> list[ValidatedPoint]:
@@ -121,7 +126,7 @@ def missed_points(validated_points: Sequence[ValidatedPoint]) -> list[ValidatedP
 
 @dataclass(frozen=True, slots=True)
 class PublishedPointCounts:
-    """Numbers of compared points by role and verdict, as the README, the report and the pages state them.
+    """Counts of the compared published points by role and verdict; README, report and pages state them.
 
     The field names are keys of the document that `jointfmu validate --json` writes.
 
@@ -153,9 +158,9 @@ def count_points(validated_points: Sequence[ValidatedPoint]) -> PublishedPointCo
     printed = sum(point.printed for point in numbers)
     guessed = [row for row in validated_points if row.nearer_estimate]
 
-    def roles(points: Sequence[ValidatedPoint]) -> dict[str, int]:
+    def roles(validated_points: Sequence[ValidatedPoint]) -> dict[str, int]:
         """Number of points of each role."""
-        found = Counter(row.point.role for row in points)
+        found = Counter(row.point.role for row in validated_points)
         return {role: found[role] for role in ROLES}
 
     return PublishedPointCounts(
@@ -209,27 +214,27 @@ def _format_cells(validated_point: ValidatedPoint) -> tuple[str, ...]:
     )
 
 
-def format_error(point: PublishedPoint, error: float) -> str:
+def format_error(published_point: PublishedPoint, error: float) -> str:
     """Format the error of a computed value: in per cent, or in the unit of the point.
 
     The unit is used if the tolerance is absolute.
     """
-    scale, unit = _error_scale(point)
-    small = abs(error) <= _MAX_ROUNDING_OVER_TOLERANCE * point.tolerance
+    scale, unit = _error_scale(published_point)
+    small = abs(error) <= _MAX_ROUNDING_OVER_TOLERANCE * published_point.tolerance
     return ("0" if small else f"{scale * error:+.3g}") + unit
 
 
-def format_tolerance(point: PublishedPoint) -> str:
+def format_tolerance(published_point: PublishedPoint) -> str:
     """Format the tolerance of a published point, in the unit of `format_error`."""
-    scale, unit = _error_scale(point)
-    return f"{scale * point.tolerance:.3g}{unit}"
+    scale, unit = _error_scale(published_point)
+    return f"{scale * published_point.tolerance:.3g}{unit}"
 
 
-def _error_scale(point: PublishedPoint) -> tuple[float, str]:
+def _error_scale(published_point: PublishedPoint) -> tuple[float, str]:
     """Factor and unit text of errors and tolerances; percentage points for a number in per cent."""
-    if not point.absolute:
+    if not published_point.absolute:
         return 100.0, " %"
-    return 1.0, {"%": " points", "1": ""}.get(point.unit, f" {point.unit}")
+    return 1.0, {"%": " points", "1": ""}.get(published_point.unit, f" {published_point.unit}")
 
 
 def format_claim(validated_point: ValidatedPoint) -> str:

@@ -82,26 +82,26 @@ class LoadCurves:
         }
 
 
-def load_curves(kind: JointKind) -> LoadCurves:
+def load_curves(joint_kind: JointKind) -> LoadCurves:
     """Load the quantities along a ramp of a kind of joint, from its module `uncertainty`.
 
     Raises ValueError if the joint has none.
     """
-    module = load_tool_module(kind, "uncertainty")
+    module = load_tool_module(joint_kind, "uncertainty")
     if module is None:
-        raise ValueError(f"joint = {kind.name!r} states no quantities along a load ramp")
+        raise ValueError(f"joint = {joint_kind.name!r} states no quantities along a load ramp")
     curves: LoadCurves = module.UNCERTAINTY_CURVES
     return curves
 
 
-def spline_weights(knots: Array, points: Array, derivative: int = 0) -> Array:
+def spline_weights(knots: Array, abscissas: Array, derivative: int = 0) -> Array:
     """Matrix (points, knots) that gives values of a cubic spline at points from its values at knots.
 
     derivative : order of the derivative; -1: integral from the first knot
 
     The samples of a study have the same knots and points but for round-off: both are rounded to 1e-12.
     """
-    return _spline_weights(np.round(knots, 12).tobytes(), np.round(points, 12).tobytes(), derivative)
+    return _spline_weights(np.round(knots, 12).tobytes(), np.round(abscissas, 12).tobytes(), derivative)
 
 
 @lru_cache(maxsize=16)

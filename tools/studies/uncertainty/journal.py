@@ -30,21 +30,21 @@ LOCKED_BYTE_POSITION = 1 << 40
 """Position of the locked byte in the file of runs [byte], beyond all runs."""
 
 
-def sha256_text(data: bytes) -> str:
+def sha256_text(content: bytes) -> str:
     """SHA-256 digest of bytes, as hexadecimal text."""
-    return hashlib.sha256(data).hexdigest()
+    return hashlib.sha256(content).hexdigest()
 
 
-def claim_folder(folder: Path, study_record: Mapping[str, object]) -> None:
+def claim_folder(study_folder: Path, study_record: Mapping[str, object]) -> None:
     """Write a study into its folder, or check that the folder already holds this study.
 
     Raises ValueError if the folder holds another study (the message names a difference) or other files.
     """
-    path = folder / STUDY_FILE
+    path = study_folder / STUDY_FILE
     if not path.exists():
-        if folder.exists() and not (folder.is_dir() and not any(folder.iterdir())):
+        if study_folder.exists() and not (study_folder.is_dir() and not any(study_folder.iterdir())):
             raise ValueError(
-                f"{folder}: contains other files than those of a study; state a new or empty folder"
+                f"{study_folder}: contains other files than those of a study; state a new or empty folder"
             )
         write_text(path, json.dumps(study_record, indent=1) + "\n")
         return
@@ -60,27 +60,27 @@ def claim_folder(folder: Path, study_record: Mapping[str, object]) -> None:
     changed = sorted(key for key in {*present, *study_record} if present.get(key) != study_record.get(key))
     old, new = (json.dumps(record.get(changed[0])) for record in (present, study_record))
     raise ValueError(
-        f"{folder}: holds another study ({replace_unprintable(changed[0])[:60]} = {old[:60]}, now "
+        f"{study_folder}: holds another study ({replace_unprintable(changed[0])[:60]} = {old[:60]}, now "
         f"{new[:60]}); repeat that study, or state another folder"
     )
 
 
 @contextmanager
-def open_claimed_folder(folder: Path, study_record: Mapping[str, object]) -> Iterator[None]:
+def open_claimed_folder(study_folder: Path, study_record: Mapping[str, object]) -> Iterator[None]:
     """Context manager that claims the folder of a study, see `claim_folder`.
 
     If the context raises ValueError before a run is finished, a new folder is removed again.
     """
-    new = not (folder / STUDY_FILE).exists()
-    with ensure_folder(folder):
-        claim_folder(folder, study_record)
+    new = not (study_folder / STUDY_FILE).exists()
+    with ensure_folder(study_folder):
+        claim_folder(study_folder, study_record)
         try:
             yield
         except ValueError:
-            runs = folder / RUNS_FILE
+            runs = study_folder / RUNS_FILE
             if new and not (runs.exists() and runs.stat().st_size):
                 runs.unlink(missing_ok=True)
-                (folder / STUDY_FILE).unlink()
+                (study_folder / STUDY_FILE).unlink()
             raise
 
 
@@ -141,17 +141,17 @@ class Journal:
         self.file.flush()
         os.fsync(self.file.fileno())
 
-    def _count_entry(self, entry: Mapping[str, Any]) -> None:
+    def _count_entry(self, journal_entry: Mapping[str, Any]) -> None:
         """Update the counts and the first failure with an entry."""
-        self.finished_runs.add(int(entry["run"]))
-        if "error" in entry:
+        self.finished_runs.add(int(journal_entry["run"]))
+        if "error" in journal_entry:
             self.failed_count += 1
-            self.first_failure = self.first_failure or dict(entry)
+            self.first_failure = self.first_failure or dict(journal_entry)
 
 
-def read_entries(folder: Path, file_name: str = RUNS_FILE) -> Iterator[dict[str, Any]]:
+def read_entries(study_folder: Path, file_name: str = RUNS_FILE) -> Iterator[dict[str, Any]]:
     """Entries of all finished runs of a folder. Raises ValueError, one line, for a row that is not a run."""
-    return (entry for entry, _ in _read_lines(folder / file_name))
+    return (entry for entry, _ in _read_lines(study_folder / file_name))
 
 
 def _read_lines(path: Path) -> Iterator[tuple[dict[str, Any], int]]:
@@ -180,20 +180,20 @@ def _read_lines(path: Path) -> Iterator[tuple[dict[str, Any], int]]:
             yield entry, end
 
 
-def _row_error(path: Path, row: int, reason: str) -> ValueError:
+def _row_error(path: Path, row_text: int, reason: str) -> ValueError:
     """Error for a row of the file of runs that is not a run of the study."""
     return ValueError(
-        f"{path}: row {row}: {replace_unprintable(reason)[:200]}; expected a run as the command wrote "
+        f"{path}: row {row_text}: {replace_unprintable(reason)[:200]}; expected a run as the command wrote "
         "it: delete "
         "the row, and the same command repeats its run"
     )
 
 
-def _check_entry(entry: object) -> None:
+def _check_entry(journal_entry: object) -> None:
     """Raise ValueError if a JSON value is no journal entry of a run."""
-    if not isinstance(entry, dict):
+    if not isinstance(journal_entry, dict):
         raise ValueError("is not a JSON object")
-    run, parameters = entry.get("run"), entry.get("parameters")
+    run, parameters = journal_entry.get("run"), journal_entry.get("parameters")
     if type(run) is not int or run < 0:
         raise ValueError(f"run = {_format_value(run)} is not an index")
     if not isinstance(parameters, dict):
@@ -206,14 +206,14 @@ def _check_entry(entry: object) -> None:
             raise ValueError(
                 f"parameter {name} = {_format_value(value)} is not a finite number, word, true or false"
             )
-    if ("columns" in entry) == ("error" in entry):
+    if ("columns" in journal_entry) == ("error" in journal_entry):
         raise ValueError("has not one of columns and error")
-    if "error" in entry:
-        if not isinstance(entry["error"], str):
-            raise ValueError(f"error = {_format_value(entry['error'])} is not a text")
-        check_text("error", entry["error"])
+    if "error" in journal_entry:
+        if not isinstance(journal_entry["error"], str):
+            raise ValueError(f"error = {_format_value(journal_entry['error'])} is not a text")
+        check_text("error", journal_entry["error"])
         return
-    columns = entry["columns"]
+    columns = journal_entry["columns"]
     if not isinstance(columns, dict) or not columns:
         raise ValueError(f"columns = {_format_value(columns)} is not a JSON object with lists of numbers")
     lengths = set()

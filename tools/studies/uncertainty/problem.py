@@ -54,21 +54,26 @@ class UncertaintyProblem:
         """Units of the load and of the outputs: {variable: unit}."""
         return {self.ramped_input.name: self.ramped_input.unit, **self.units}
 
-    def list_runs(self, points: Array) -> list[dict[str, Any]]:
+    def list_runs(self, unit_cube_points: Array) -> list[dict[str, Any]]:
         """Settings of the runs for points (n, d) of the unit cube."""
-        samples = draw_samples(self.uncertain_parameters, points)
+        samples = draw_samples(self.uncertain_parameters, unit_cube_points)
         rows = zip(*(column.tolist() for column in samples.values()), strict=True)
         return [{**self.settings, **dict(zip(samples, row, strict=True))} for row in rows]
 
-    def study_record(self, count: int, seed: int) -> dict[str, Any]:
+    def study_record(self, sample_count: int, seed: int) -> dict[str, Any]:
         """JSON object that identifies the study, for its folder."""
-        distributions = {parameter.name: parameter.text for parameter in self.uncertain_parameters}
-        counts = {"samples": count, "seed": seed}
+        distributions = {
+            parameter.name: parameter.distribution_text for parameter in self.uncertain_parameters
+        }
+        counts = {"samples": sample_count, "seed": seed}
         return {**self.identifying_record, **counts, "parameters": {**distributions, **self.settings}}
 
 
 def state_problem(
-    file: ParameterFile, settings: Mapping[str, object], ramp_end: float | None, ramp_point_count: int
+    parameter_file: ParameterFile,
+    settings: Mapping[str, object],
+    ramp_end: float | None,
+    ramp_point_count: int,
 ) -> UncertaintyProblem:
     """State the uncertainty study of a parameter file: load ramp, and settings with distributions.
 
@@ -82,28 +87,31 @@ def state_problem(
     Raises ValueError for an unknown name, a value outside its interval, or a distribution of a parameter that
     cannot be uncertain.
     """
-    curves, declared = load_curves(KINDS[file.joint]), dict(flatten_fields(type(file.values)))
-    base = dict(file.values_by_name)
+    curves, declared = (
+        load_curves(KINDS[parameter_file.joint]),
+        dict(flatten_fields(type(parameter_file.values))),
+    )
+    base = dict(parameter_file.values_by_name)
     lists = {name for name, item in declared.items() if "series" in item.metadata}
     settable = [*(base.keys() - lists), curves.load.name]
     if unknown := [name for name in settings if name not in settable]:
         allowed = ", ".join(name for name in [*declared, curves.load.name] if name in settable)
         raise ValueError(f"unknown name {unknown[0]!r}, allowed are {allowed}")
-    stated = {name for name in file.ranges if name in base}
-    if _INPUTS_SECTION_PREFIX + curves.load.name in file.ranges and ramp_end is None:
+    stated = {name for name in parameter_file.ranges if name in base}
+    if _INPUTS_SECTION_PREFIX + curves.load.name in parameter_file.ranges and ramp_end is None:
         stated.add(curves.load.name)
     settings = dict.fromkeys(sorted(stated), INTERVAL_SETTING) | dict(settings)
     settings = {
-        name: _load_interval(curves, file)
+        name: _load_interval(curves, parameter_file)
         if (name, value) == (curves.load.name, INTERVAL_SETTING)
-        else resolve_interval(name, value, file)
+        else resolve_interval(name, value, parameter_file)
         for name, value in settings.items()
     }
     load_text = settings.get(curves.load.name)
     relative = isinstance(load_text, str) and is_relative(load_text)
     plain, uncertain = split_settings(settings, base | ({curves.load.name: 1.0} if relative else {}))
     set_load = plain.pop(curves.load.name, None)
-    nominal = file.with_values(plain, "user", "set for the study")
+    nominal = parameter_file.with_values(plain, "user", "set for the study")
     for parameter in uncertain:
         if parameter.name != curves.load.name:
             _check_uncertain(parameter, declared[parameter.name])
@@ -116,58 +124,65 @@ def state_problem(
     median = None if load is None or relative else float(load.distribution.median())
     single = set_load if set_load is not None else median
     end = (
-        ramp_end if ramp_end is not None or single is not None else file.start_value(curves.load.name) or None
+        ramp_end
+        if ramp_end is not None or single is not None
+        else parameter_file.start_value(curves.load.name) or None
     )
     loads = _ramp_loads(curves, nominal.values, single, end, ramp_point_count, load)
     record = {
-        "joint": file.joint,
+        "joint": parameter_file.joint,
         "parameter_file_sha256": sha256_text(format_parameter_file(nominal).encode()),
         "load": curves.load.name,
         "to": float(loads[-1]),
         "points": loads.size,
     }
-    model = KINDS[file.joint].find_model(curves.model).with_parameters(file.joint, file.values)
+    model = (
+        KINDS[parameter_file.joint]
+        .find_model(curves.model)
+        .with_parameters(parameter_file.joint, parameter_file.values)
+    )
     exposed = {*model.parameter_fields(), curves.load.name}
     reopens = any(parameter.name not in exposed for parameter in order)
     ramp = JointRamp(nominal, loads, relative, reopens)
-    return UncertaintyProblem(file.joint, curves.load, loads, curves.units, order, {}, ramp, record)
+    return UncertaintyProblem(parameter_file.joint, curves.load, loads, curves.units, order, {}, ramp, record)
 
 
-def _load_interval(curves: LoadCurves, file: ParameterFile) -> str:
-    """Range of the load as text LOW..HIGH, without the part of the load that the joint loses.
+def _load_interval(curves: LoadCurves, parameter_file: ParameterFile) -> str:
+    """Range of the load as text LOW..HIGH, less the part of the load that the joint loses (by embedding).
 
     Raises ValueError if the file states no range for the start value of the load, or if the joint loses all.
     """
     name = _INPUTS_SECTION_PREFIX + curves.load.name
-    if name not in file.ranges:
+    if name not in parameter_file.ranges:
         raise ValueError(f"{curves.load.name} = {INTERVAL_SETTING}: the file states no range of {name}")
-    loss = curves.load_loss(file.values)
-    low, high = (end - loss for end in file.ranges[name])
+    loss = curves.load_loss(parameter_file.values)
+    low, high = (end - loss for end in parameter_file.ranges[name])
     if low <= 0.0:
         raise ValueError(
-            f"range of {name}: {file.ranges[name][0]:g} {curves.load.unit} is outside ({loss:g}, inf) "
-            f"{curves.load.unit}: the joint loses all of it; state {curves.load.name}=LOW..HIGH"
+            f"range of {name}: {parameter_file.ranges[name][0]:g} {curves.load.unit} is outside "
+            f"({loss:g}, inf) {curves.load.unit}: the joint loses all of it; "
+            f"state {curves.load.name}=LOW..HIGH"
         )
     return f"{low!r}..{high!r}"
 
 
-def resolve_interval(name: str, value: object, file: ParameterFile) -> object:
+def resolve_interval(parameter_name: str, setting: object, parameter_file: ParameterFile) -> object:
     """Replace the setting "interval" by the text LOW..HIGH; other settings are returned unchanged.
 
     The ends are the range of the parameter in the file, else the interval stated in the text of its source.
 
     Raises ValueError if the file states neither.
     """
-    if value != INTERVAL_SETTING:
-        return value
-    for entry in (name, _INPUTS_SECTION_PREFIX + name):
-        if entry in file.ranges:
-            return "{!r}..{!r}".format(*file.ranges[entry])
-    source = file.sources.get(name, "")
+    if setting != INTERVAL_SETTING:
+        return setting
+    for entry in (parameter_name, _INPUTS_SECTION_PREFIX + parameter_name):
+        if entry in parameter_file.ranges:
+            return "{!r}..{!r}".format(*parameter_file.ranges[entry])
+    source = parameter_file.sources.get(parameter_name, "")
     if not (match := _INTERVAL_PATTERN.search(source)):
         raise ValueError(
-            f"{name} = {INTERVAL_SETTING}: its source states none: {source!r}; expected '... interval "
-            "LOW to HIGH'"
+            f"{parameter_name} = {INTERVAL_SETTING}: its source states none: {source!r}; expected '... "
+            "interval LOW to HIGH'"
         )
     return f"{match[1]}..{match[2]}"
 
@@ -178,9 +193,13 @@ def _check_uncertain(parameter: UncertainParameter, parameter_field: Any) -> Non
     parameter_field : dataclass field that declares the parameter
     """
     if "allowed" in parameter_field.metadata:
-        raise ValueError(f"{parameter.name} = {parameter.text}: is a named choice and cannot be uncertain")
+        raise ValueError(
+            f"{parameter.name} = {parameter.distribution_text}: is a named choice and cannot be uncertain"
+        )
     if parameter_field.metadata["whole"]:
-        raise ValueError(f"{parameter.name} = {parameter.text}: is a whole number and cannot be uncertain")
+        raise ValueError(
+            f"{parameter.name} = {parameter.distribution_text}: is a whole number and cannot be uncertain"
+        )
     for value in (
         *(end for end in parameter.support if np.isfinite(end)),
         float(parameter.distribution.median()),
@@ -189,26 +208,26 @@ def _check_uncertain(parameter: UncertainParameter, parameter_field: Any) -> Non
             value == 0.0 and parameter.support[0] == 0.0 and parameter_field.metadata["interval"].low == 0.0
         )
         if not tolerated and (text := find_problem(parameter.name, value, parameter_field)):
-            raise ValueError(f"{parameter.name} = {parameter.text}: {text}")
+            raise ValueError(f"{parameter.name} = {parameter.distribution_text}: {text}")
 
 
 def _ramp_loads(
     curves: LoadCurves,
-    values: object,
+    parameter_set: object,
     single_load: object,
     ramp_end: float | None,
-    points: int,
+    load_count: int,
     uncertain_load: UncertainParameter | None,
 ) -> Array:
     """Loads (m): a ramp from 0 to `ramp_end`, or the single load that was set.
 
-    values         : parameter set
+    parameter_set  : parameter set
     single_load    : the load that was set, or None
     uncertain_load : distribution of the load, or None
 
     Raises ValueError for a load outside of the tabulated law, or a wrong ramp.
     """
-    allowed = Interval.from_bounds(gt=0.0, le=curves.max_load(values))
+    allowed = Interval.from_bounds(gt=0.0, le=curves.max_load(parameter_set))
     if single_load is not None:
         if ramp_end is not None:
             raise ValueError(
@@ -226,9 +245,9 @@ def _ramp_loads(
                 text = f"{curves.load.name} = {value:g} {curves.load.unit}"
                 raise ValueError(f"{text} is outside {allowed}: {LOAD_INTERVAL_MEANING}")
         return np.array([float(single_load)])
-    end = curves.default_end(values) if ramp_end is None else ramp_end
+    end = curves.default_end(parameter_set) if ramp_end is None else ramp_end
     if not allowed.contains(end):
         raise ValueError(f"to = {end:g} {curves.load.unit} is outside {allowed}: {LOAD_INTERVAL_MEANING}")
-    if not 2 <= points <= 10_000:
-        raise ValueError(f"points = {points} is outside [2, 10000]: points of the ramp")
-    return np.linspace(0.0, end, points)
+    if not 2 <= load_count <= 10_000:
+        raise ValueError(f"points = {load_count} is outside [2, 10000]: points of the ramp")
+    return np.linspace(0.0, end, load_count)

@@ -74,7 +74,9 @@ class Bands:
 
 
 def compute_bands(
-    uncertainty_problem: UncertaintyProblem, points: Array, execution: Execution = LOCAL_UNSAVED_EXECUTION
+    uncertainty_problem: UncertaintyProblem,
+    unit_cube_points: Array,
+    execution: Execution = LOCAL_UNSAVED_EXECUTION,
 ) -> Bands:
     """Bands (distribution along the ramp) of all outputs, from points (n, d) of the unit cube.
 
@@ -84,7 +86,7 @@ def compute_bands(
     if "error" in first:
         raise ValueError(f"{uncertainty_problem.title}: without samples of its parameters: {first['error']}")
     nominal = {name: np.asarray(first["columns"][name]) for name in uncertainty_problem.units}
-    runs = uncertainty_problem.list_runs(points)
+    runs = uncertainty_problem.list_runs(unit_cube_points)
     samples = evaluate_runs(
         uncertainty_problem.evaluator,
         runs,
@@ -92,9 +94,9 @@ def compute_bands(
         uncertainty_problem.loads.size,
         execution,
     )
-    refused, accepted = summarise_refusals(uncertainty_problem, points, samples), samples.accepted
+    refused, accepted = summarise_refusals(uncertainty_problem, unit_cube_points, samples), samples.accepted
     if not np.any(accepted):
-        raise RuntimeError(f"all {len(points)} samples are rejected; the first: {refused.reason}")
+        raise RuntimeError(f"all {len(unit_cube_points)} samples are rejected; the first: {refused.reason}")
     statistics = {
         name: np.stack([_statistics(row, accepted) for row in value], axis=1)
         for name, value in samples.outputs.items()
@@ -111,35 +113,37 @@ def compute_bands(
     )
 
 
-def _statistics(row: SinglePrecisionArray, accepted: Mask) -> Array:
+def _statistics(output_samples: SinglePrecisionArray, accepted: Mask) -> Array:
     """Mean, standard deviation and quantiles of one output at one load, over the samples.
 
     Quantiles are linear between samples.
 
-    row, accepted : output (n), and mask (n) of the samples to be used
+    output_samples, accepted : output (n), and mask (n) of the samples to be used
     """
-    values = np.sort(row[accepted]).astype(np.float64)
+    values = np.sort(output_samples[accepted]).astype(np.float64)
     positions = np.array(QUANTILES) * (values.size - 1)
     return np.array([values.mean(), values.std(), *np.interp(positions, np.arange(values.size), values)])
 
 
 def summarise_refusals(
-    uncertainty_problem: UncertaintyProblem, points: Array, samples: SampledOutputs
+    uncertainty_problem: UncertaintyProblem, unit_cube_points: Array, samples: SampledOutputs
 ) -> RefusedSamples:
     """Summary of the samples that the law refuses: their number, and the first one with the error message."""
     if not samples.errors:
         return RefusedSamples(0, {}, "")
     first, reason = next(iter(samples.errors.items()))
-    example = draw_samples(uncertainty_problem.uncertain_parameters, points[first : first + 1])
+    example = draw_samples(uncertainty_problem.uncertain_parameters, unit_cube_points[first : first + 1])
     return RefusedSamples(
         len(samples.errors), {name: float(value[0]) for name, value in example.items()}, reason
     )
 
 
-def sample_designs(uncertainty_problem: UncertaintyProblem, count: int, seed: int) -> tuple[Array, Array]:
+def sample_designs(
+    uncertainty_problem: UncertaintyProblem, point_count: int, seed: int
+) -> tuple[Array, Array]:
     """Two independent sets of points (count, d) of the unit cube: for bands and indices, for indices only."""
     d = len(uncertainty_problem.uncertain_parameters)
-    both = unit_cube_points(count, 2 * d, seed)
+    both = unit_cube_points(point_count, 2 * d, seed)
     return both[:, :d], both[:, d:]
 
 
@@ -151,13 +155,13 @@ MAX_INDEX_LOADS = 21
 class SobolIndices:
     """First-order and total Sobol' indices (s, d) of s outputs with respect to d parameters.
 
-    first_half, total_half : half widths (s, d) of the 95 % confidence intervals of first and total
+    first_order_half_width, total_half_width : half widths (s, d) of the 95 % confidence intervals
     """
 
-    first: Array
-    first_half: Array
-    total: Array
-    total_half: Array
+    first_order: Array
+    first_order_half_width: Array
+    total_order: Array
+    total_half_width: Array
 
 
 @dataclass(frozen=True, slots=True)

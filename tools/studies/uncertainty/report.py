@@ -19,7 +19,7 @@ MAX_TABLE_ROWS = 6
 
 
 def select_table_loads(uncertainty_problem: UncertaintyProblem) -> list[float]:
-    """Loads above zero of the ramp that the printed table shows."""
+    """Select the loads above zero of the ramp that the printed table shows."""
     return [
         float(load)
         for load in uncertainty_problem.loads[_select_table_indices(uncertainty_problem.loads)]
@@ -27,9 +27,9 @@ def select_table_loads(uncertainty_problem: UncertaintyProblem) -> list[float]:
     ]
 
 
-def _select_table_indices(values: Any) -> Any:
-    """Indices of at most MAX_TABLE_ROWS equally spaced values of a ramp."""
-    return np.unique(np.linspace(0, values.size - 1, MAX_TABLE_ROWS).astype(int))
+def _select_table_indices(ramp_values: Any) -> Any:
+    """Select at most MAX_TABLE_ROWS equally spaced values of a ramp; returns their indices."""
+    return np.unique(np.linspace(0, ramp_values.size - 1, MAX_TABLE_ROWS).astype(int))
 
 
 def format_bands_csv(uncertainty_problem: UncertaintyProblem, bands: Bands) -> str:
@@ -69,7 +69,8 @@ def study_to_json(
     return {
         "fmu" if uncertainty_problem.title.endswith(".fmu") else "joint": uncertainty_problem.title,
         "parameters": {
-            parameter.name: parameter.text for parameter in uncertainty_problem.uncertain_parameters
+            parameter.name: parameter.distribution_text
+            for parameter in uncertainty_problem.uncertain_parameters
         },
         "load": {"name": load.name, "unit": load.unit, "values": bands.loads.tolist()},
         "samples": bands.sample_count,
@@ -85,13 +86,20 @@ def study_to_json(
 
 def _indices_json(sensitivity: Sensitivity) -> dict[str, object]:
     """JSON object of the Sobol' indices at all loads."""
-    numbers = ("first", "first_half", "total", "total_half")
+    fields_by_key = {
+        "first": "first_order",
+        "first_half": "first_order_half_width",
+        "total": "total_order",
+        "total_half": "total_half_width",
+    }
     return {
         "rows": sensitivity.base_sample_count,
         "loads": sensitivity.loads.tolist(),
         "outputs": {
             output: {
-                parameter: {number: getattr(indices, number)[:, i].tolist() for number in numbers}
+                parameter: {
+                    key: getattr(indices, field)[:, i].tolist() for key, field in fields_by_key.items()
+                }
                 for i, parameter in enumerate(sensitivity.parameter_names)
             }
             for output, indices in sensitivity.outputs.items()
@@ -118,7 +126,8 @@ def format_table(
     if sensitivity is not None:
         lines += _indices_table(uncertainty_problem, sensitivity, bands.nonzero_outputs)
     varied = ", ".join(
-        f"{parameter.name} = {parameter.text}" for parameter in uncertainty_problem.uncertain_parameters
+        f"{parameter.name} = {parameter.distribution_text}"
+        for parameter in uncertainty_problem.uncertain_parameters
     )
     lines.append(f"over {uncertainty_problem.ramped_input.name}: {uncertainty_problem.ramped_input.doc}")
     lines.append(f"varied: {varied}{'' if bands.has_scatter else ': no output depends on it'}")
@@ -143,8 +152,8 @@ def _indices_table(
     for i, parameter in enumerate(sensitivity.parameter_names):
         cells = []
         for indices in (sensitivity.outputs[name] for name in outputs):
-            first = f"{indices.first[-1, i]:.3f} +- {indices.first_half[-1, i]:.3f}"
-            total = f"{indices.total[-1, i]:.3f} +- {indices.total_half[-1, i]:.3f}"
+            first = f"{indices.first_order[-1, i]:.3f} +- {indices.first_order_half_width[-1, i]:.3f}"
+            total = f"{indices.total_order[-1, i]:.3f} +- {indices.total_half_width[-1, i]:.3f}"
             cells.append(f"{first} / {total}")
         lines.append(f"{parameter:<{width}}" + "".join(f"{cell:>32}" for cell in cells))
     return [*lines, ""]
@@ -173,42 +182,44 @@ def draw_bands_and_indices(path: Path, bands: Bands, sensitivity: Sensitivity | 
                 _draw_indices(grid[1, column], sensitivity, name, load, legend=column == 0)
 
 
-def _draw_bands(axes: "Axes", bands: Bands, name: str, label: str, load: str) -> None:
+def _draw_bands(axes: "Axes", bands: Bands, output_name: str, label: str, load: str) -> None:
     """Draw median and quantile bands of an output over the load."""
-    q = dict(zip(QUANTILES, bands.quantiles[name], strict=True))
+    q = dict(zip(QUANTILES, bands.quantiles[output_name], strict=True))
     for low, high, shade in ((0.01, 0.99, 0.12), (0.05, 0.95, 0.2), (0.25, 0.75, 0.3)):
         text = f"{100 * low:g} to {100 * high:g} %"
         axes.fill_between(
             bands.loads, q[low], q[high], color=plots.BLUE, alpha=shade, linewidth=0, label=text
         )
     axes.plot(bands.loads, q[0.5], color=plots.BLUE, label="median")
-    axes.plot(bands.loads, bands.nominal[name], color=plots.RED, linestyle="--", label="parameter file")
+    axes.plot(
+        bands.loads, bands.nominal[output_name], color=plots.RED, linestyle="--", label="parameter file"
+    )
     axes.set(xlabel=load, ylabel=label, xlim=(0.0, bands.loads[-1]), ylim=(0.0, None))
     axes.legend(fontsize=8)
 
 
-def _draw_distribution(axes: "Axes", bands: Bands, name: str, label: str) -> None:
+def _draw_distribution(axes: "Axes", bands: Bands, output_name: str, label: str) -> None:
     """Draw the cumulative distribution of an output at a single load."""
-    axes.plot(bands.quantiles[name][:, 0], 100.0 * np.array(QUANTILES), "o-", color=plots.BLUE)
-    axes.axvline(bands.nominal[name][0], color=plots.RED, linestyle="--", label="parameter file")
+    axes.plot(bands.quantiles[output_name][:, 0], 100.0 * np.array(QUANTILES), "o-", color=plots.BLUE)
+    axes.axvline(bands.nominal[output_name][0], color=plots.RED, linestyle="--", label="parameter file")
     axes.set(xlabel=label, ylabel="samples below [%]", ylim=(0.0, 100.0))
     axes.legend(fontsize=8)
 
 
-def _draw_indices(axes: "Axes", sensitivity: Sensitivity, name: str, load: str, legend: bool) -> None:
+def _draw_indices(axes: "Axes", sensitivity: Sensitivity, output_name: str, load: str, legend: bool) -> None:
     """Draw the Sobol' indices of an output over the load.
 
     legend : whether to draw the names of the parameters
     """
-    indices = sensitivity.outputs[name]
+    indices = sensitivity.outputs[output_name]
     for i, parameter in enumerate(sensitivity.parameter_names):
         colour = _COLOURS[i % len(_COLOURS)]
-        low = indices.total[:, i] - indices.total_half[:, i]
-        high = indices.total[:, i] + indices.total_half[:, i]
+        low = indices.total_order[:, i] - indices.total_half_width[:, i]
+        high = indices.total_order[:, i] + indices.total_half_width[:, i]
         axes.fill_between(sensitivity.loads, low, high, color=colour, alpha=0.2, linewidth=0)
-        axes.plot(sensitivity.loads, indices.total[:, i], color=colour, label=parameter)
-        axes.plot(sensitivity.loads, indices.first[:, i], color=colour, linestyle="--")
-    axes.set(xlabel=load, ylabel=f"Sobol' indices of {name}", xlim=(0.0, None), ylim=(0.0, 1.05))
+        axes.plot(sensitivity.loads, indices.total_order[:, i], color=colour, label=parameter)
+        axes.plot(sensitivity.loads, indices.first_order[:, i], color=colour, linestyle="--")
+    axes.set(xlabel=load, ylabel=f"Sobol' indices of {output_name}", xlim=(0.0, None), ylim=(0.0, 1.05))
     if legend:
         axes.plot([], [], color=plots.GREY, label="total")
         axes.plot([], [], color=plots.GREY, linestyle="--", label="first order")

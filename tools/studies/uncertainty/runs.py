@@ -84,17 +84,19 @@ def evaluate_runs(
     outputs = {name: np.full((row_count, len(runs)), np.nan, np.float32) for name in output_names}
     errors: dict[int, str] = {}
 
-    def collect_entry(entry: Entry) -> None:
+    def collect_entry(journal_entry: Entry) -> None:
         """Store the outputs, or the error, of a finished run."""
-        if "error" in entry:
-            errors[entry["run"]] = entry["error"]
+        if "error" in journal_entry:
+            errors[journal_entry["run"]] = journal_entry["error"]
             return
-        columns = entry["columns"]
+        columns = journal_entry["columns"]
         if any(len(columns.get(name, ())) != row_count for name in outputs):
-            text = f"run {entry['run']}: its columns are not those of the study; expected another folder"
+            text = (
+                f"run {journal_entry['run']}: its columns are not those of the study; expected another folder"
+            )
             raise ValueError(f"{execution.folder}: {text}")
         for name, values in outputs.items():
-            values[:, entry["run"]] = columns[name]
+            values[:, journal_entry["run"]] = columns[name]
 
     with _open_journal(execution.folder, len(runs), file_name) as kept:
         finished: set[int] = set()
@@ -110,12 +112,14 @@ def evaluate_runs(
 
 
 @contextmanager
-def _open_journal(folder: Path | None, run_count: int, file_name: str) -> Iterator[journal.Journal | None]:
+def _open_journal(
+    study_folder: Path | None, run_count: int, file_name: str
+) -> Iterator[journal.Journal | None]:
     """Context with the journal of a study's folder; None without a folder."""
-    if folder is None:
+    if study_folder is None:
         yield None
     else:
-        with journal.Journal(folder, run_count, file_name) as kept:
+        with journal.Journal(study_folder, run_count, file_name) as kept:
             yield kept
 
 

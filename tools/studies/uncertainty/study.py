@@ -46,12 +46,12 @@ _DISTRIBUTION_CALL_PATTERN = re.compile(r"(\w+)\((.*)\)")
 class UncertainParameter:
     """Uncertain parameter: name and distribution.
 
-    text : text of the distribution, as the user wrote it
+    distribution_text : text of the distribution, as the user wrote it
     distribution : frozen distribution of scipy.stats
     """
 
     name: str
-    text: str
+    distribution_text: str
     distribution: Any
 
     @property
@@ -61,7 +61,9 @@ class UncertainParameter:
         return float(low), float(high)
 
 
-def parse_distribution(name: str, text: str, file_value: float | None) -> UncertainParameter | None:
+def parse_distribution(
+    parameter_name: str, distribution_text: str, file_value: float | None
+) -> UncertainParameter | None:
     """Parse the text of a distribution; None if the text is a plain value or word.
 
     file_value : value of the parameter file, to which a percentage without a value refers; None if there is
@@ -70,24 +72,25 @@ def parse_distribution(name: str, text: str, file_value: float | None) -> Uncert
     Raises ValueError that names the parameter, the text and the allowed forms.
     """
     try:
-        law = _parse_distribution(text.strip(), file_value)
+        law = _parse_distribution(distribution_text.strip(), file_value)
     except ValueError as error:
         raise ValueError(
-            f"{name} = {text}: {error or 'is not a distribution'}; allowed are {DISTRIBUTION_FORMS}"
+            f"{parameter_name} = {distribution_text}: {error or 'is not a distribution'}; "
+            f"allowed are {DISTRIBUTION_FORMS}"
         ) from None
-    return law and UncertainParameter(name, text, law)
+    return law and UncertainParameter(parameter_name, distribution_text, law)
 
 
-def _parse_distribution(text: str, file_value: float | None) -> Any:
+def _parse_distribution(distribution_text: str, file_value: float | None) -> Any:
     """Parse a distribution of scipy.stats; None if the text is a plain value or word."""
-    if ".." in text:
-        return _uniform(*_parse_numbers(text.split(".."), 2))
-    if "+-" in text:
-        middle, _, spread = text.partition("+-")
+    if ".." in distribution_text:
+        return _uniform(*_parse_numbers(distribution_text.split(".."), 2))
+    if "+-" in distribution_text:
+        middle, _, spread = distribution_text.partition("+-")
         m = _parse_number(middle) if middle.strip() else _require_file_value(file_value)
         half_width = abs(m) * _parse_percent(spread) if _is_percent(spread) else _parse_number(spread)
         return _uniform(m - half_width, m + half_width)
-    if call := _DISTRIBUTION_CALL_PATTERN.fullmatch(text):
+    if call := _DISTRIBUTION_CALL_PATTERN.fullmatch(distribution_text):
         if call[1] not in _DISTRIBUTION_PARSERS:
             raise ValueError(f"there is no distribution {call[1]!r}")
         return _DISTRIBUTION_PARSERS[call[1]](
@@ -96,10 +99,10 @@ def _parse_distribution(text: str, file_value: float | None) -> Any:
     return None
 
 
-def _uniform(low: float, high: float) -> object:
+def _uniform(lower_end: float, upper_end: float) -> object:
     """Uniform distribution of scipy.stats between two values."""
-    _check_ascending(low, high)
-    return stats.uniform(low, high - low)
+    _check_ascending(lower_end, upper_end)
+    return stats.uniform(lower_end, upper_end - lower_end)
 
 
 def _loguniform(texts: list[str], file_value: float | None) -> object:
@@ -162,28 +165,28 @@ def _parse_centre_and_spread(texts: list[str], file_value: float | None) -> tupl
     return _parse_number(texts[0]), texts[1]
 
 
-def _check_ascending(low: float, high: float) -> None:
+def _check_ascending(lower_end: float, upper_end: float) -> None:
     """Raise ValueError unless the lower end of a distribution is below the upper one."""
-    if not low < high:
-        raise ValueError(f"low = {low:g} is not below high = {high:g}")
+    if not lower_end < upper_end:
+        raise ValueError(f"low = {lower_end:g} is not below high = {upper_end:g}")
 
 
-def _parse_numbers(texts: list[str], count: int) -> list[float]:
-    """Parse `count` finite numbers from the texts of a distribution.
+def _parse_numbers(texts: list[str], number_count: int) -> list[float]:
+    """Parse `number_count` finite numbers from the texts of a distribution.
 
     Raises ValueError for another count or another text.
     """
-    if len(texts) != count:
-        raise ValueError(f"has {len(texts)} numbers, expected {count}")
+    if len(texts) != number_count:
+        raise ValueError(f"has {len(texts)} numbers, expected {number_count}")
     return [_parse_number(text) for text in texts]
 
 
-def _parse_number(text: str) -> float:
+def _parse_number(number_text: str) -> float:
     """Parse a finite number. Raises ValueError if the text is not a finite number."""
     try:
-        value = float(text)
+        value = float(number_text)
     except ValueError:
-        raise ValueError(f"{text.strip()!r} is not a number") from None
+        raise ValueError(f"{number_text.strip()!r} is not a number") from None
     if not math.isfinite(value):
         raise ValueError(f"{value:g} is not finite")
     return value
@@ -194,9 +197,9 @@ def _is_percent(text: str) -> bool:
     return text.strip().endswith("%")
 
 
-def _parse_percent(text: str) -> float:
+def _parse_percent(percentage_text: str) -> float:
     """Parse a positive percentage, as a fraction [1]."""
-    value = _parse_number(text.strip()[:-1])
+    value = _parse_number(percentage_text.strip()[:-1])
     if value <= 0.0:
         raise ValueError(f"{value:g} % is outside (0, inf)")
     return value / 100.0
@@ -209,11 +212,11 @@ def _require_file_value(file_value: float | None) -> float:
     return file_value
 
 
-def is_relative(text: str) -> bool:
+def is_relative(distribution_text: str) -> bool:
     """Whether the text of a distribution is a percentage without a value, relative to another value."""
-    text = text.strip()
-    call = _DISTRIBUTION_CALL_PATTERN.fullmatch(text)
-    return text.startswith("+-") or bool(call and "," not in call[2] and _is_percent(call[2]))
+    distribution_text = distribution_text.strip()
+    call = _DISTRIBUTION_CALL_PATTERN.fullmatch(distribution_text)
+    return distribution_text.startswith("+-") or bool(call and "," not in call[2] and _is_percent(call[2]))
 
 
 MAX_SAMPLES = 2**24
@@ -240,7 +243,7 @@ def read_study(path: str | Path) -> dict[str, object]:
 
 
 def merge_settings(path: Path | None, stated_settings: Sequence[tuple[str, object]]) -> dict[str, object]:
-    """Settings {name: value} of a study file, if there is one, replaced by the stated settings."""
+    """Merge the settings {name: value} of a study file with stated settings, which take precedence."""
     return (read_study(path) if path else {}) | dict(stated_settings)
 
 
@@ -282,17 +285,19 @@ def check_seed(seed: int) -> None:
         raise ValueError(f"seed = {seed} is outside [0, inf)")
 
 
-def unit_cube_points(count: int, dimensions: int, seed: int) -> Array:
+def unit_cube_points(point_count: int, dimensions: int, seed: int) -> Array:
     """Points (count, dimensions) of a scrambled Sobol' sequence in the open unit cube, count = 2^k."""
     sequence = qmc.Sobol(dimensions, scramble=True, bits=64, seed=seed)
-    points = sequence.random_base2(int(math.log2(count)))
+    points = sequence.random_base2(int(math.log2(point_count)))
     return np.asarray(np.clip(points, 2.0**-40, 1.0 - 2.0**-40))
 
 
-def draw_samples(uncertain_parameters: Sequence[UncertainParameter], points: Array) -> dict[str, Array]:
+def draw_samples(
+    uncertain_parameters: Sequence[UncertainParameter], unit_cube_points: Array
+) -> dict[str, Array]:
     """Map points (n, d) of the unit cube to samples, {name: (n)}, by the inverse distribution functions."""
     return {
-        parameter.name: np.asarray(parameter.distribution.ppf(points[:, i]))
+        parameter.name: np.asarray(parameter.distribution.ppf(unit_cube_points[:, i]))
         for i, parameter in enumerate(uncertain_parameters)
     }
 

@@ -56,7 +56,8 @@ def state_fmu_problem(fmu: Path, load_ramp: LoadRamp, settings: Mapping[str, obj
         )
     if wrong := [parameter for parameter in uncertain if parameter.name not in real]:
         raise ValueError(
-            f"{fmu}: {wrong[0].name} = {wrong[0].text}: is not a real number and cannot be uncertain"
+            f"{fmu}: {wrong[0].name} = {wrong[0].distribution_text}: is not a real number and "
+            "cannot be uncertain"
         )
     record = {
         "fmu": fmu.name,
@@ -85,13 +86,13 @@ def _load_contained_parameter_file(fmu: Path) -> ParameterFile:
     raise ValueError(f"{fmu}: contains no parameter file; state LOW..HIGH in place of {INTERVAL_SETTING}")
 
 
-def format_runs_csv(folder: Path, units: Mapping[str, str]) -> str:
+def format_runs_csv(study_folder: Path, units: Mapping[str, str]) -> str:
     """CSV text of a study: quantiles of each output at each point of the ramp.
 
     The quantiles are taken over all runs that did not fail.
     """
     runs: dict[str, list[Array]] = {}
-    for entry in journal.read_entries(folder):
+    for entry in journal.read_entries(study_folder):
         for name, values in entry.get("columns", {}).items():
             runs.setdefault(name, []).append(np.asarray(values, dtype=np.float64))
     driven, *outputs = runs

@@ -56,7 +56,7 @@ class RampEvaluator(Protocol):
     def install_files(self, folder: Path) -> "RampEvaluator":
         """Copy of the evaluator whose files are in a folder of this machine."""
 
-    def run(self, index: int, settings: Settings) -> Entry:
+    def run(self, run_number: int, settings: Settings) -> Entry:
         """Evaluate a run of the study; return its journal entry."""
 
 
@@ -70,18 +70,18 @@ def run_job(job: tuple[RampEvaluator, Path, Sequence[Run]]) -> list[Entry]:
     return [evaluator.run(index, settings) for index, settings in runs]
 
 
-def _failed_entry(index: int, settings: Settings, error: str) -> Entry:
+def _failed_entry(run_number: int, settings: Settings, error: str) -> Entry:
     """Journal entry of a run that failed: its settings and the error message."""
     return {
-        "run": index,
+        "run": run_number,
         "parameters": dict(settings),
         "error": replace_unprintable(error)[:MAX_TEXT_LENGTH],
     }
 
 
-def killed_entry(index: int, settings: Settings) -> Entry:
+def killed_entry(run_number: int, settings: Settings) -> Entry:
     """Journal entry of a run whose process died."""
-    return _failed_entry(index, settings, KILLED_RUN_MESSAGE)
+    return _failed_entry(run_number, settings, KILLED_RUN_MESSAGE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,17 +125,17 @@ class FmuRamp:
             full.unlink()
         return replace(self, fmu=slim, fmu_content=None)
 
-    def run(self, index: int, settings: Settings) -> Entry:
+    def run(self, run_number: int, settings: Settings) -> Entry:
         """Run the FMU along the ramp; the settings are start values of parameters and inputs."""
         drive = self.load_ramp
         try:
             result = ramp.run_ramp(self.fmu, drive.input, drive.to, drive.step, settings)
         except (ValueError, RuntimeError) as error:
-            return _failed_entry(index, settings, str(error).replace(str(self.fmu), self.fmu.name))
+            return _failed_entry(run_number, settings, str(error).replace(str(self.fmu), self.fmu.name))
         if not_finite := [key for key, column in result.columns.items() if not np.all(np.isfinite(column))]:
-            return _failed_entry(index, settings, f"{not_finite[0]} is not finite")
+            return _failed_entry(run_number, settings, f"{not_finite[0]} is not finite")
         columns = {key: column.tolist() for key, column in result.columns.items()}
-        return {"run": index, "parameters": dict(settings), "columns": columns}
+        return {"run": run_number, "parameters": dict(settings), "columns": columns}
 
 
 def write_slim_fmu(fmu: Path, slim_path: Path) -> None:
@@ -181,7 +181,10 @@ class JointRamp:
         return 4 if self.opens_joint_per_sample else 512
 
     def __getstate__(self) -> dict[str, Any]:
-        """State for pickle: a parameter set may hold functions in its cached properties."""
+        """Attributes for pickle, with a new parameter set that has no cached properties.
+
+        Cached properties may be functions, which pickle rejects.
+        """
         stated = self.file.values_by_name
         values = assemble_parameter_set(type(self.file.values), stated, _make_unchecked)
         return {**self.__dict__, "file": replace(self.file, values=values)}
@@ -199,16 +202,16 @@ class JointRamp:
         """Return this evaluator unchanged: it needs no files (the evaluator of an FMU unpacks the FMU)."""
         return self
 
-    def run(self, index: int, settings: Settings) -> Entry:
+    def run(self, run_number: int, settings: Settings) -> Entry:
         """Compute the joint along the ramp; the settings are values of parameters and of the load."""
         try:
             with np.errstate(all="ignore"):
                 columns = self.evaluate(settings)
         except (ValueError, RuntimeError) as error:
-            return _failed_entry(index, settings, str(error))
+            return _failed_entry(run_number, settings, str(error))
         if not all(np.all(np.isfinite(column)) for column in columns.values()):
-            return _failed_entry(index, settings, "the law gives no finite value")
-        return {"run": index, "parameters": dict(settings), "columns": columns}
+            return _failed_entry(run_number, settings, "the law gives no finite value")
+        return {"run": run_number, "parameters": dict(settings), "columns": columns}
 
     def evaluate(self, settings: Settings) -> dict[str, Array]:
         """Loads and all quantities of a sample of the joint, at the loads that are evaluated.
@@ -236,7 +239,7 @@ class JointRamp:
             columns[quantity.variable.name] = column
         return columns
 
-    def _evaluate_outputs(self, sample: "_Sample", loads: Array, rows: Array) -> dict[str, Array]:
+    def _evaluate_outputs(self, sample: "_Sample", loads: Array, load_indices: Array) -> dict[str, Array]:
         """Outputs of the FMU at the selected loads; along a long ramp they are interpolated by splines.
 
         The splines interpolate log(output) over log(load), or output/load if the output has zeros.
@@ -244,19 +247,21 @@ class JointRamp:
         name, count = self.curves.load.name, self.curves.knot_count
         loaded = loads[loads > 0.0]
         if count is None or loaded.size <= count:
-            found = sample.follow({name: loads[rows]})
+            found = sample.follow({name: loads[load_indices]})
             return {v.name: found[v.name] for v in self.curves.outputs}
         knots = np.geomspace(loaded[0], loaded[-1], count)
         found = sample.follow({name: np.append(0.0, knots)})
-        is_loaded, columns = loads[rows] > 0.0, {}
-        weights = spline_weights(np.log(knots / knots[-1]), np.log(loads[rows][is_loaded] / knots[-1]))
+        is_loaded, columns = loads[load_indices] > 0.0, {}
+        weights = spline_weights(
+            np.log(knots / knots[-1]), np.log(loads[load_indices][is_loaded] / knots[-1])
+        )
         for variable in self.curves.outputs:
             values = found[variable.name]
-            column = np.full(rows.size, values[0])
+            column = np.full(load_indices.size, values[0])
             if np.all(values[1:] > 0.0):
                 column[is_loaded] = np.exp(weights @ np.log(values[1:]))
             else:
-                column[is_loaded] = loads[rows][is_loaded] * (weights @ (values[1:] / knots))
+                column[is_loaded] = loads[load_indices][is_loaded] * (weights @ (values[1:] / knots))
             columns[variable.name] = column
         return columns
 

@@ -22,7 +22,7 @@ SIMULATION_TOLERANCE = 1e-7
 
 
 class CompiledSystem(LoadedLibrary):
-    """System that its compiled library simulates. Parameters, start values and inputs are set in each run.
+    """Compiled simulation of a system. Parameters, start values and inputs are set in each run.
 
     The library does not depend on the values of exposed parameters. After the first time, zig finds it in its
     cache.
@@ -63,7 +63,7 @@ class CompiledSystem(LoadedLibrary):
 
     def simulate(
         self,
-        values: Mapping[str, float],
+        value_by_name: Mapping[str, float],
         times: Array,
         inputs: Mapping[str, Array],
         output_names: Sequence[str],
@@ -71,8 +71,8 @@ class CompiledSystem(LoadedLibrary):
     ) -> Array:
         """Simulate the system; returns the outputs (n, outputs) [SI] at the times.
 
-        values : {parameter, or start value of a state: SI value} that differ from the system
-        times  : (n) [s], increasing
+        value_by_name : {parameter, or start value of a state: SI value} that differ from the system
+        times : (n) [s], increasing
         inputs : {input: values (n) [SI]}, linear between the times; other inputs keep their start values
         tolerance : relative tolerance of a step [1]
 
@@ -85,8 +85,8 @@ class CompiledSystem(LoadedLibrary):
         times = np.ascontiguousarray(times, dtype=np.float64)
         played, read = self._list_references([*inputs]), self._list_references(output_names)
         first = {name: float(column[0]) for name, column in inputs.items()}
-        states = {name: value for name, value in values.items() if name not in self._start_values}
-        parameters = {name: value for name, value in values.items() if name in self._start_values}
+        states = {name: value for name, value in value_by_name.items() if name not in self._start_values}
+        parameters = {name: value for name, value in value_by_name.items() if name in self._start_values}
         lib, instance = self._library, self._instance
         with self._lock:
             self._messages.clear()

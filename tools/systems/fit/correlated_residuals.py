@@ -21,7 +21,7 @@ ORDERS_PER_DECADE = 10.0
 
 
 def estimate_spectrum(residuals: Array) -> Array:
-    """Power spectrum of residuals (n) [1] at the frequencies of `numpy.fft.fft` of 2 n points.
+    """Estimate the power spectrum of residuals (n) [1] at the frequencies of `numpy.fft.fft` of 2 n points.
 
     Its mean is the variance; it is constant for independent residuals.
     """

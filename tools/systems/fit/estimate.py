@@ -95,7 +95,7 @@ def fit_system(
 
 
 def _make_unknowns(
-    system: System, model: Model, start_file: ParameterFile, record: Record, free: Sequence[str]
+    system: System, model: Model, start_file: ParameterFile, measured_record: Record, free: Sequence[str]
 ) -> list[Unknown]:
     """Make the unknowns of the fit.
 
@@ -112,7 +112,7 @@ def _make_unknowns(
         if list(free).count(name) > 1:
             raise ValueError(f"parameter {name!r} is given twice; state it once")
         if name in states:
-            column = record.outputs.get(name, np.zeros(1))
+            column = measured_record.outputs.get(name, np.zeros(1))
             span = float(np.ptp(column)) or states[name].nominal
             unknowns.append(Unknown(name, states[name].unit, float(column[0]), -np.inf, np.inf, span))
         elif name in numbers:
@@ -132,23 +132,23 @@ def _make_unknowns(
     return unknowns
 
 
-def _list_free(name: str, numbers: Iterable[str]) -> str:
-    """Parameters of the component of `name` that can be fitted, as text."""
-    component = name.partition(".")[0]
-    return f"allowed are {', '.join(n for n in numbers if n.startswith(f'{component}.'))}"
+def _list_free(component_name: str, parameter_names: Iterable[str]) -> str:
+    """Parameters of the component of `component_name` that can be fitted, as text."""
+    component = component_name.partition(".")[0]
+    return f"allowed are {', '.join(n for n in parameter_names if n.startswith(f'{component}.'))}"
 
 
-def _check_start(record: Record, model: Model, free: Sequence[str]) -> None:
+def _check_start(measured_record: Record, model: Model, free: Sequence[str]) -> None:
     """Raise ValueError if a measured state does not start at zero, and its start value is not fitted."""
     for v in model.outputs[: model.state_count]:
-        column = record.outputs.get(v.name)
+        column = measured_record.outputs.get(v.name)
         if (
             column is not None
             and v.name not in free
             and abs(column[0]) > MAX_START_OVER_COLUMN_RANGE * np.ptp(column)
         ):
             raise ValueError(
-                f"{record.path}: {v.name} starts at {column[0]:.4g} {v.unit}, the system at 0; "
+                f"{measured_record.path}: {v.name} starts at {column[0]:.4g} {v.unit}, the system at 0; "
                 f"add {v.name} to the free parameters to fit its start value"
             )
 
@@ -164,18 +164,20 @@ class _Estimation:
     compiled: CompiledSystem
     fitted_count: int
 
-    def simulate(self, values: Mapping[str, float], row_count: int) -> Array:
+    def simulate(self, value_by_name: Mapping[str, float], row_count: int) -> Array:
         """Simulated columns (rows, columns) [SI] of the first rows of the record."""
         inputs = {name: column[:row_count] for name, column in self.record.inputs.items()}
-        return self.compiled.simulate(values, self.record.time[:row_count], inputs, [*self.record.outputs])
+        return self.compiled.simulate(
+            value_by_name, self.record.time[:row_count], inputs, [*self.record.outputs]
+        )
 
     def measured(self, row_count: int) -> Array:
         """Measured columns (rows, columns) [SI] of the first rows of the record."""
         return np.column_stack([column[:row_count] for column in self.record.outputs.values()])
 
-    def misfit(self, values: Mapping[str, float], row_count: int) -> Array:
+    def misfit(self, value_by_name: Mapping[str, float], row_count: int) -> Array:
         """Simulated minus measured columns (rows, columns) [SI] of the record."""
-        return self.simulate(values, row_count) - self.measured(row_count)
+        return self.simulate(value_by_name, row_count) - self.measured(row_count)
 
     def check_effects(self, unknowns: Sequence[Unknown]) -> None:
         """Raise ValueError for a fitted parameter that changes no compared column."""
@@ -193,9 +195,10 @@ class _Estimation:
                 )
 
     def fit(self, unknowns: Sequence[Unknown]) -> tuple[Solution, Array]:
-        """Solution with the covariance of correlated residuals, and standard deviation of each column [SI].
+        """Fit the parameters; returns the solution, and the standard deviation of each column [SI].
 
-        The residuals of the solution are those of all columns, one after the other.
+        The covariance of the solution allows for correlated residuals. Its residuals are those of all
+        columns, one after the other.
         """
         measured = self.measured(self.fitted_count)
         smallest, current = MIN_NOISE_OVER_SCATTER * np.std(measured, axis=0), list(unknowns)
@@ -241,7 +244,7 @@ def _limit_change(unknown: Unknown) -> Unknown:
 def _make_result(
     estimation: _Estimation, solution: Solution, noise: Array, model: Model, start_file: ParameterFile
 ) -> FitResult:
-    """Result of the fit: intervals, facts, plots, notes."""
+    """Make the result of the fit: intervals, facts, plots, notes."""
     record, count = estimation.record, estimation.fitted_count
     columns = np.split(solution.residuals, len(record.outputs))
     jacobian, quantile = whiten_jacobian(solution.jacobian, columns)
@@ -311,17 +314,19 @@ def _root_mean_square(values: Array) -> float:
     return float(np.sqrt(np.mean(values**2)))
 
 
-def _make_plot(record: Record, name: str, unit: str, misfit: Array, count: int) -> FitPlot:
+def _make_plot(record: Record, column_name: str, unit: str, misfit: Array, fitted_row_count: int) -> FitPlot:
     """Plot of one column over time: measured, fitted and predicted values; below measured minus simulated."""
-    column = record.outputs[name]
+    column = record.outputs[column_name]
     shown, factor = plots.choose_unit(unit, column)
-    label = f"{name} ({shown})"
+    label = f"{column_name} ({shown})"
     simulated = factor * (column + misfit)
     return FitPlot(
-        data_x=record.time,
-        data_y=factor * column,
+        measured_x=record.time,
+        measured_y=factor * column,
         misfit=-factor * misfit,
-        law_curve=(record.time[:count], simulated[:count]),
+        law_curve=(record.time[:fitted_row_count], simulated[:fitted_row_count]),
         axis_labels=("time (s)", label, f"misfit ({shown})"),
-        other_laws={"predicted": (record.time[count:], simulated[count:])} if count < column.size else {},
+        other_laws={"predicted": (record.time[fitted_row_count:], simulated[fitted_row_count:])}
+        if fitted_row_count < column.size
+        else {},
     )

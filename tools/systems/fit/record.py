@@ -13,7 +13,7 @@ from jointfmu.quantity.units import CELSIUS_UNIT, CELSIUS_ZERO_IN_KELVIN, UNITS,
 from ...common import columns
 from ...common.names import find_similar_names
 
-MIN_ROWS = 8
+MIN_RECORD_ROW_COUNT = 8
 """Smallest number of rows of a record [1]."""
 
 
@@ -60,7 +60,7 @@ def read_record(path: Path, model: Model, stated_headings: Sequence[str] = ()) -
                 f"{path}: column {heading!r} is no variable of the system, "
                 f"{list_similar_names(heading, units)}"
             )
-    table = columns.read_columns(path, known, MIN_ROWS, stated_headings=stated)
+    table = columns.read_columns(path, known, MIN_RECORD_ROW_COUNT, stated_headings=stated)
     time = table.require_column("time", known)
     if np.any(backward := np.diff(time) <= 0.0):
         row = int(np.argmax(backward))

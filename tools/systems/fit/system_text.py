@@ -14,20 +14,20 @@ _BARE_KEY_PATTERN = re.compile(r"[\w-]+", re.ASCII)
 
 
 def format_fitted_system(
-    path: Path, fitted_values: ParameterFile, fitted_units: Mapping[str, str], target: Path
+    path: Path, fitted_values: ParameterFile, fitted_units: Mapping[str, str], target_path: Path
 ) -> str:
     """Text of a system file with fitted values.
 
     path          : the original system file
     fitted_values : parameters of all components, with origins and sources
     fitted_units  : {COMPONENT.PARAMETER: SI unit} of the values to write; other names are states
-    target        : file to write; paths of parameter files become relative to its folder
+    target_path   : file to write; paths of parameter files become relative to its folder
 
     Raises ValueError as `check_sections`.
     """
     document = check_sections(path, fitted_units)
     for section in document.values():
-        _move_paths(section, path.parent, target.parent)
+        _move_paths(section, path.parent, target_path.parent)
     for name in fitted_units.keys() & fitted_values.values_by_name.keys():
         component, _, parameter = name.partition(".")
         entries = document[component]

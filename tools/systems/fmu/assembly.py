@@ -26,7 +26,7 @@ def assemble_system(system: System) -> SystemModel:
     """
     feeds: dict[str, dict[str, InputSource | None]] = {name: {} for name in system.components}
     for wire in find_signals(system):
-        feeds[wire.target][wire.input] = InputSource(wire.source, wire.output)
+        feeds[wire.target_component][wire.input] = InputSource(wire.source_component, wire.output)
     for first, second in find_connections(system):
         if first.is_joint and first.component and second.component is None:  # fixed to the ground
             zero_inputs = {

@@ -21,13 +21,13 @@ from .persson import bearing_curve_log_slope, contact_area_shares
 FEW_SPOTS_STIFFNESS_FACTOR = 0.3
 """Factor C [1] of the stiffness at small load, see `RoughnessLaw.spot_distribution`; fitted to boundary
 elements (studies/validity_stiffness.py roughness)."""
-STIFFNESS_ONSET_LOAD_RATIO = 1e-6
+STIFFNESS_ONSET_NORMALISED_LOAD = 1e-6
 """Load over E* h longest_wave [1] at which the stiffness begins: far below the load of a single hill."""
-MIN_VALIDATED_LOAD_RATIO = 0.3
+MIN_VALIDATED_NORMALISED_LOAD = 0.3
 """Smallest load over E* h longest_wave [1] at which the law was compared with boundary elements: below, a
 single hill is in contact (docs/validity_stiffness.md).
 """
-MAX_VALIDATED_PRESSURE_RATIO = 1.5
+MAX_VALIDATED_NORMALISED_PRESSURE = 1.5
 """Largest pressure over E* h/longest_wave [1] at which the law was compared with boundary elements: above,
 the longest wave is flattened."""
 _SIZE_EXPONENT = 0.25
@@ -88,7 +88,7 @@ class RoughnessLaw(HardnessLimitedLaw, RoughSurfaces, CheckedParameters):
             * p
             * A
             / self.h
-            * STIFFNESS_ONSET_LOAD_RATIO ** (-self.hurst / (1.0 + self.hurst))
+            * STIFFNESS_ONSET_NORMALISED_LOAD ** (-self.hurst / (1.0 + self.hurst))
         )
         power = 1.0 / (1.0 + self.hurst)
         return SpotDistribution(
@@ -121,8 +121,8 @@ class RoughnessLaw(HardnessLimitedLaw, RoughSurfaces, CheckedParameters):
     def find_range_violations(self, lowest_pressure: float, highest_pressure: float) -> list[str]:
         """Messages, one line each, if an interval of pressures [Pa] leaves the validated range."""
         scale = contact_modulus(self.side1, self.side2) * self.h
-        min_pressure = MIN_VALIDATED_LOAD_RATIO * scale * self.longest_wave / self.A_0
-        max_pressure = MAX_VALIDATED_PRESSURE_RATIO * scale / self.longest_wave
+        min_pressure = MIN_VALIDATED_NORMALISED_LOAD * scale * self.longest_wave / self.A_0
+        max_pressure = MAX_VALIDATED_NORMALISED_PRESSURE * scale / self.longest_wave
         messages = []
         if lowest_pressure < min_pressure:
             messages.append(
@@ -181,10 +181,10 @@ class RoughnessLaw(HardnessLimitedLaw, RoughSurfaces, CheckedParameters):
 def onset_pressure(law: RoughnessLaw) -> Number:
     """Lowest pressure [Pa] at which the law is valid; below it the stiffness begins from 0.
 
-    p_1 = STIFFNESS_ONSET_LOAD_RATIO E* h longest_wave/A_0, where u = ln(p/p_1) is 0.
+    p_1 = STIFFNESS_ONSET_NORMALISED_LOAD E* h longest_wave/A_0, where u = ln(p/p_1) is 0.
     """
     return (
-        STIFFNESS_ONSET_LOAD_RATIO
+        STIFFNESS_ONSET_NORMALISED_LOAD
         * contact_modulus(law.side1, law.side2)
         * law.h
         * law.longest_wave

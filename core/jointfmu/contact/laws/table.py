@@ -34,8 +34,8 @@ MAX_ONSET_EXPONENT = 1.0
 one, the approach from first contact to the first point would depend on the pressure of first contact."""
 ONSET_PRESSURE_OVER_FIRST_POINT = 1e-6
 """Pressure at which the stiffness begins, over the pressure of the first point [1]."""
-MIN_TRACTION_RATIO = 1e-7
-"""Traction ratio [1] below which the loss factor is proportional to it, within round-off."""
+MIN_TRACTION_OVER_FRICTION_LIMIT = 1e-7
+"""Tangential force over friction limit [1] below which the loss factor is proportional to it (round-off)."""
 MAX_STIFFNESS_EXPONENT = 5.0
 """Largest exponent of K ~ p^n between two points [1]: contact of rough surfaces has up to about 1."""
 MIN_PRESSURE_RATIO_OF_NEIGHBOURS = 1.001
@@ -273,7 +273,7 @@ def loss_factor(traction_ratio: Number, exponent: Number) -> Number:
     eta_t = (4/pi) [integral of (2 t - x) (1 - t)^-n dt]/(x s), both from 0 to x. With n = 1 this is the loss
     factor of the law `roughness`; small x give 2 n x/(3 pi).
     """
-    x = np.maximum(traction_ratio, MIN_TRACTION_RATIO)
+    x = np.maximum(traction_ratio, MIN_TRACTION_OVER_FRICTION_LIMIT)
     end = 0.0 - np.log1p(0.0 - x)  # t = 1 - exp(-v)
     rest = exponent - 1.0
     moment = integrate_gauss(lambda v: (0.0 - 2.0 * np.expm1(0.0 - v) - x) * np.exp(rest * v), 0.0 * end, end)

@@ -29,7 +29,7 @@ def condense_stiffness(tangent_stiffness: Array) -> Array:
 
 
 class Compliances(NamedTuple):
-    """Compliances of a tightened joint along and about x, y, z, each with the other five motions held.
+    """Compliances of a tightened joint along and about x, y, z; for each, the other five motions are zero.
 
     component_compliances : (3, 6) [m/N, rad/(N.m)] twice the energy in interface, members and bolts at a unit
                             force or moment

@@ -120,18 +120,18 @@ class Contact:
         return NormalState(approach, pressure, stiffness, patch_approach)
 
 
-def force_transfer(points: PressureDistribution, patches: FrictionPatches) -> Array:
+def force_transfer(contact_points: PressureDistribution, patches: FrictionPatches) -> Array:
     """Shares (m, n) [1] of the patches in the normal force of each point, with the sum 1 up to rounding.
 
     Under equal bolt forces each patch gets its own normal force, and each point acts on the patches near it:
     entropic optimal transport of force from points to patches (Sinkhorn's iteration). Its width is the mean
     square distance of the force from the nearest patch.
     """
-    square = np.sum((patches.position[:, None] - points.position) ** 2, axis=2)
+    square = np.sum((patches.position[:, None] - contact_points.position) ** 2, axis=2)
     nearest = np.min(square, axis=0)
     point_force, patch_force = (
         nodes.area_share * (nodes.preload_pressure_ratio + ADDED_OVER_MEAN_PRESSURE)
-        for nodes in (points, patches)
+        for nodes in (contact_points, patches)
     )
     width = np.maximum(point_force @ nearest / np.sum(point_force), np.finfo(float).tiny)
     kernel = np.exp(-np.minimum((square - nearest) / width, MAX_OVER_MEAN_SQUARE_DISTANCE))
@@ -147,12 +147,12 @@ def force_transfer(points: PressureDistribution, patches: FrictionPatches) -> Ar
     return np.asarray(np.where(kernel > 0.0, rounded, 0.0))
 
 
-def pressure_transfer(points: PressureDistribution, patches: FrictionPatches) -> Array:
+def pressure_transfer(contact_points: PressureDistribution, patches: FrictionPatches) -> Array:
     """Matrix (m, n) [1] that maps the pressures of contact points to the pressures of friction patches.
 
     The matrix distributes the normal forces as `force_transfer` does.
     """
-    return force_transfer(points, patches) * points.area_share / patches.area_share[:, None]
+    return force_transfer(contact_points, patches) * contact_points.area_share / patches.area_share[:, None]
 
 
 def elastic_shear(

@@ -433,7 +433,7 @@ def search_line(
 
 
 def apply_broyden(correction: Array, earlier_corrections: Sequence[Array]) -> Array:
-    """Correction (k) [m] after Broyden's good update of J by earlier corrections (Kelley 1995, chapter 7)."""
+    """Improve a Newton correction (k) [m] by Broyden's good update of J (Kelley 1995, chapter 7)."""
     for last, following in pairwise(earlier_corrections):
         correction = correction + (last @ correction) / (last @ last) * following
     if earlier_corrections:

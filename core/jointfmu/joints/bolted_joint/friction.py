@@ -118,7 +118,7 @@ class FrictionLaw:
         offsets = height_offsets(self.patches.preload_pressure_ratio)
 
         def build_foundation(*approaches: bytes) -> Foundation:
-            """Slider foundation for an onset approach and a smallest approach, both as bytes."""
+            """Build the slider foundation for an onset and a smallest approach [m], both as bytes."""
             onset, smallest = (np.frombuffer(each) for each in approaches)
             heights = heights_after_liftoff(slider_heights(self.pressure_curve, onset, offsets), smallest)
             return Foundation(self.pressure_curve, self.stiffness_ratio, self.friction_coefficient, heights)
@@ -144,7 +144,7 @@ class FrictionLaw:
     def update_friction(
         self, history: History, approach: Array, tangential_increment: Array
     ) -> FrictionUpdate:
-        """Friction after a straight path to approaches (m) [m] by tangential displacements (m, 3) [m]."""
+        """Update the friction for a straight path to approaches (m) [m] by tangential motions (m, 3) [m]."""
         start = approach if history["state"] == NO_HISTORY else history["approach"]
         stick, force = self.foundation().stick_stiffness(approach), history["force"]
         if history["state"] < SLIP_1D:

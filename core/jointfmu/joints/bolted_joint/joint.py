@@ -357,7 +357,7 @@ class BoltedJointSpring:
         friction_update: FrictionUpdate,
         total_loss: float,
     ) -> Array:
-        """History variables at relative displacement q (6) and modal coordinates a (k) [m].
+        """Join the history variables at displacement q (6) and modal coordinates a (k) [m] to one array.
 
         total_loss : [J] energy dissipated so far
         """
@@ -390,11 +390,11 @@ class BoltedJointSpring:
 
 
 def _rigid_member_modes(
-    joint: AnyBoltedJoint, points: PressureDistribution, patches: FrictionPatches
+    joint: AnyBoltedJoint, contact_points: PressureDistribution, patches: FrictionPatches
 ) -> MemberModes:
     """Empty set of modes, for rigid members."""
     return MemberModes.for_rigid_bodies(
-        points.area_share.size, patches.area_share.size, len(bolt_positions(joint))
+        contact_points.area_share.size, patches.area_share.size, len(bolt_positions(joint))
     )
 
 

@@ -29,9 +29,9 @@ def opening_jacobian(position: Array) -> Array:
     return J
 
 
-def point_displacement(points: PressureDistribution, relative_displacement: Array) -> Array:
+def point_displacement(contact_points: PressureDistribution, relative_displacement: Array) -> Array:
     """Tangential displacement (n, 2) [m] of contact points along x and y, for relative displacement q (6)."""
-    (x, y), (s_x, s_y, theta_z) = points.position.T, relative_displacement[TANGENTIAL_COMPONENTS]
+    (x, y), (s_x, s_y, theta_z) = contact_points.position.T, relative_displacement[TANGENTIAL_COMPONENTS]
     return np.stack([s_x - theta_z * y, s_y + theta_z * x], axis=-1)
 
 

@@ -325,7 +325,7 @@ def find_contradictions(joint: AnyBoltedJoint) -> Iterator[str]:
 
 def preload_pressure(
     joint: AnyBoltedJoint,
-    distribution: PressureDistribution | MergedDistribution,
+    pressure_distribution: PressureDistribution | MergedDistribution,
     preload: ArrayLike,
     moment: ArrayLike,
 ) -> Array:
@@ -338,7 +338,11 @@ def preload_pressure(
     force, bending = np.asarray(preload)[..., None], np.asarray(moment)[..., None]
     return np.asarray(
         node_pressure(
-            joint, distribution.preload_pressure_ratio, distribution.moment_pressure_ratio, force, bending
+            joint,
+            pressure_distribution.preload_pressure_ratio,
+            pressure_distribution.moment_pressure_ratio,
+            force,
+            bending,
         )
     )
 

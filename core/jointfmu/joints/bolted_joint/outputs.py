@@ -54,27 +54,29 @@ _ELONGATION_SUM_NAMES = CONTACT_SUM_NAMES[-3:]
 """Names of the sums over the bolts: elongation by the modes, and its first moments."""
 
 
-def first_moments(points: PressureDistribution, sum_name: str, point_values: Array) -> dict[str, Number]:
+def first_moments(
+    contact_points: PressureDistribution, sum_name: str, point_values: Array
+) -> dict[str, Number]:
     """Area-weighted sum of the values (n) of the points, and its first moments in x and y."""
-    each = points.area_share * point_values
+    each = contact_points.area_share * point_values
     return {
         sum_name: np.sum(each),
-        f"{sum_name}_x": each @ points.position[:, 0],
-        f"{sum_name}_y": each @ points.position[:, 1],
+        f"{sum_name}_x": each @ contact_points.position[:, 0],
+        f"{sum_name}_y": each @ contact_points.position[:, 1],
     }
 
 
 def second_moments(
-    points: PressureDistribution, sum_name_prefix: str, point_values: Array
+    contact_points: PressureDistribution, sum_name_prefix: str, point_values: Array
 ) -> dict[str, Number]:
     """Area-weighted second moments of the values (n) of the points, about x (times y^2) and y (times x^2)."""
-    each = points.area_share * point_values
-    x, y = points.position.T
+    each = contact_points.area_share * point_values
+    x, y = contact_points.position.T
     return {f"{sum_name_prefix}about_x": each @ y**2, f"{sum_name_prefix}about_y": each @ x**2}
 
 
 def sum_normal_tractions(
-    points: PressureDistribution,
+    contact_points: PressureDistribution,
     pressure: Array,
     stiffness: Array,
     added_pressure: Number = 0.0,
@@ -85,28 +87,28 @@ def sum_normal_tractions(
     added_pressure, added_stiffness : terms of both that are due to shear
     """
     p, k = pressure, stiffness
-    x, y = points.position.T
+    x, y = contact_points.position.T
     return {
-        **first_moments(points, "normal", p + added_pressure),
-        "normal_stiffness": points.area_share @ (k + added_stiffness),
-        **second_moments(points, "normal_", k + added_stiffness),
-        "pressure": points.area_share @ p,
-        **first_moments(points, "stiffness", k),
-        **second_moments(points, "", k),
-        "about_xy": (points.area_share * k) @ (x * y),
+        **first_moments(contact_points, "normal", p + added_pressure),
+        "normal_stiffness": contact_points.area_share @ (k + added_stiffness),
+        **second_moments(contact_points, "normal_", k + added_stiffness),
+        "pressure": contact_points.area_share @ p,
+        **first_moments(contact_points, "stiffness", k),
+        **second_moments(contact_points, "", k),
+        "about_xy": (contact_points.area_share * k) @ (x * y),
     }
 
 
 def sum_friction_tractions(
-    patches: FrictionPatches, traction: Array, tangent: Sequence[Number], loss: Number
+    patches: FrictionPatches, traction: Array, tangent: Sequence[Number], friction_loss: Number
 ) -> dict[str, Number]:
     """Area-weighted sums of the tractions (m, 3) [Pa] of the patches, with tangent and loss {name: value}.
 
-    tangent, loss : (3) [Pa/m] and [J/m2] sums over the patches
+    tangent, friction_loss : (3) [Pa/m] and [J/m2] sums over the patches
     """
     sums = [patches.area_share @ np.sum(traction * unit, axis=1) for unit in unit_displacements(patches)]
     named = [*zip(_TRACTION_SUM_NAMES, sums, strict=True), *zip(_SHEAR_STIFFNESS_SUMS, tangent, strict=True)]
-    return {**dict(named), "loss": loss}
+    return {**dict(named), "loss": friction_loss}
 
 
 def sum_tangential_stiffness(patches: FrictionPatches, tangent: Array) -> list[Number]:

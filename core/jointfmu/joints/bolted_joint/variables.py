@@ -25,10 +25,11 @@ MAX_FRICTION_UTILIZATION_WITHOUT_HISTORY = 0.5**0.5
 PERMISSIBLE_TEMPERATURES = 223.15, 423.15
 """Temperature range [K] without a warning, -50 to 150 degrees C: at 150 degrees C, Young's modulus is 7 %
 lower for aluminium (EN 1999-1-2), and less for steel."""
-_MIN_RAMP_END_PRELOAD = 30e3
-"""Smallest preload at the end of the ramp [N], if none is stated: bolts are tightened close to yield."""
-_MIN_LOOP_PRELOAD = 9e3
-"""Smallest preload of the load cycle [N], if none is stated: preload of the published pressures."""
+_DEFAULT_RAMP_END_PRELOAD = 30e3
+"""Preload at the end of the load ramp [N] if none is stated; larger if embedding takes over half of it."""
+_DEFAULT_LOOP_PRELOAD = 9e3
+"""Preload of the load cycle [N] if none is stated: preload of the published pressures. It is larger if
+embedding takes more than half of it."""
 _NORMAL_INPUTS = ("preload", "moment", "temperature", "s_rel_z", "theta_x", "theta_y")
 """Names of the inputs that change the contact pressure."""
 _INTERFACE_OUTPUTS = ("C_xx", "C_yy", "C_zz", "eta_t", "eta_n")
@@ -50,7 +51,7 @@ def _read_vector(inputs: VariableValues, vector_name: str) -> tuple[float, float
 def _advance_spring(
     spring: BoltedJointSpring, inputs: VariableValues, history: Any
 ) -> tuple[Mapping[str, float], Any]:
-    """Outputs and new history variables of a joint after a straight path to the inputs {name: value}."""
+    """Compute outputs and new history variables after a straight path to the inputs {name: value}."""
     q = np.array([*_read_vector(inputs, "s_rel"), *_read_vector(inputs, "theta")])
     rates = (*_read_vector(inputs, "v_rel"), *_read_vector(inputs, "omega"))
     return spring.advance(
@@ -71,7 +72,7 @@ def _find_ramp_range(spring: BoltedJointSpring, start_values: VariableValues) ->
             f"preload = {preload:g} N is outside ({loss:g}, inf) N: embedding{warm} takes all of it; "
             "increase preload or reduce embedding"
         )
-    return 0.0, preload or max(_MIN_RAMP_END_PRELOAD, 2.0 * loss)
+    return 0.0, preload or max(_DEFAULT_RAMP_END_PRELOAD, 2.0 * loss)
 
 
 def _max_row_moment(joint: Any, inputs: VariableValues) -> Number:
@@ -84,13 +85,13 @@ def _make_model_variant(model: Model, joint: AnyBoltedJoint) -> Model:
     """Model for a parameter set: outputs of bolt forces, load cycle with a preload above the embedding."""
     assert model.load_cycle
     loop = replace(
-        model.load_cycle, variable_values={"preload": max(_MIN_LOOP_PRELOAD, 2.0 * joint.embedding)}
+        model.load_cycle, variable_values={"preload": max(_DEFAULT_LOOP_PRELOAD, 2.0 * joint.embedding)}
     )
     return _add_bolt_force_outputs(replace(model, load_cycle=loop), joint)
 
 
 def _add_bolt_force_outputs(model: Model, joint: AnyBoltedJoint) -> Model:
-    """Model with the bolt forces as outputs, if the members are elastic.
+    """Add the bolt forces to the outputs of a model, if the members are elastic.
 
     Then all outputs depend on all motions, except the viscous damping of the interface.
     """
@@ -233,8 +234,8 @@ MODELS = (
                 "Young's moduli and expansion coefficients are those at 20 degrees C; the unit is kelvin",
             ),
         ),
-        ramp=LoadRamp("preload", _MIN_RAMP_END_PRELOAD, 100.0, find_range=_find_ramp_range),
-        load_cycle=LoadCycle("s_rel_x", 5e-6, {"preload": _MIN_LOOP_PRELOAD}),
+        ramp=LoadRamp("preload", _DEFAULT_RAMP_END_PRELOAD, 100.0, find_range=_find_ramp_range),
+        load_cycle=LoadCycle("s_rel_x", 5e-6, {"preload": _DEFAULT_LOOP_PRELOAD}),
         dependencies={
             "f_x": (*_MOTION_INPUTS, "v_rel_x", "omega_z"),
             "f_y": (*_MOTION_INPUTS, "v_rel_y", "omega_z"),

@@ -103,7 +103,7 @@ def mesh_phase(mesh: MeshParameters, motion: Sequence[Number]) -> Number:
 def combine_in_series(
     mesh: MeshParameters, approach: Number, pressure: Number, stiffness: Number, d2p: Number
 ) -> tuple[Number, Number, Number, Number]:
-    """Deflection [m], load [N], stiffness [N/m] and its derivative [N/m2] of flanks and teeth in series.
+    """Combine flanks and teeth in series: deflection [m], load [N], stiffness [N/m], its derivative [N/m2].
 
     approach  : delta [m] of the flanks from first contact
     pressure  : p [Pa] at this approach

@@ -166,7 +166,7 @@ class FrictionSliders(Sliders):
     def pack_history(
         self, slider_update: SliderUpdate, phi1: ArrayLike, end_friction_limits: Sequence[ArrayLike]
     ) -> Array:
-        """New history variables (..., n) of the dry friction at phi1; all zero without dry friction."""
+        """Pack the history variables (..., n) of the dry friction at phi1; all zero without friction."""
         shape = slider_update.dissipated_energy.shape
         if not self.is_active:
             return np.zeros((*shape, HISTORY_LAYOUT.size))

@@ -151,7 +151,7 @@ class HysteresisSliders(Sliders):
         return self.advance_1d(variables["force"], increment, self.friction_limit, self.friction_limit)
 
     def pack_history(self, slider_update: SliderUpdate, phi: ArrayLike, total_loss: Array) -> Array:
-        """New history variables (..., n) of the hysteresis at wind-ups phi (...) [rad].
+        """Pack the history variables (..., n) of the hysteresis at wind-ups phi (...) [rad].
 
         The loss total_loss (...) [J] is the energy dissipated so far.
         """

@@ -200,7 +200,7 @@ class CatalogueDriveParameters(PrescribedDriveParameters):
         return self.T1 - self.K1 * self.corner_half_width_ratio * self.corner_angles[0]
 
     def make_midline_nodes(self) -> list[SplineNode]:
-        """Nodes of the midline: first line with lost motion, both ends of each corner, end of the table."""
+        """Make the spline nodes of the midline: lost motion, both ends of each corner, end of the table."""
         (first, second), (K1, K2, K3) = self.corner_angles, (self.K1, self.K2, self.K3)
         first_width = self.corner_half_width_ratio * first
         second_width = self.corner_half_width_ratio * second
@@ -300,7 +300,7 @@ class TableDriveParameters(MeasuredDriveParameters):
         )
 
     def make_midline_nodes(self) -> list[SplineNode]:
-        """Nodes of the midline: at zero, and at each point of the measured table."""
+        """Make the spline nodes of the midline: at zero, and at each point of the measured table."""
         x, y = (np.array([0.0, *values]) for values in (self.table.angle, self.table.torque))
         h, torque_steps = np.diff(x), np.diff(y)
         s = _node_stiffness(h, torque_steps / h)

@@ -119,7 +119,7 @@ class HarmonicDriveSpring:
     def advance_motion(
         self, motion: Sequence[ArrayLike], history: Array, temperature: ArrayLike = REFERENCE_TEMPERATURE
     ) -> tuple[dict[str, Array], Array]:
-        """Outputs and new history variables after a straight path to a motion.
+        """Compute outputs and new history variables after a straight path to a motion.
 
         motion      : phi1, w1, phi2, w2 (...) [rad, rad/s]
         history     : (n) history variables at the start of the path
@@ -152,7 +152,7 @@ class HarmonicDriveSpring:
         )
 
     def advance_torque(self, tau: ArrayLike, history: Array) -> tuple[dict[str, Array], Array]:
-        """Outputs and new history variables after a path to torques (...) [N.m], wave generator locked."""
+        """Compute outputs and new history variables after a path to torques [N.m], wave generator locked."""
         hysteresis_history, friction_history = _split_history(history)
         if self.hysteresis.is_active:
             phi = self.hysteresis.solve_wind_up(self.curve, hysteresis_history, tau)

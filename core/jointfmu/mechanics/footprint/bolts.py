@@ -20,7 +20,7 @@ _CELL_SUBDIVISIONS = 8
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoltedFrame:
-    """Rectangular frame with eight bolts on its centre line: two rows of three, one on each other side.
+    """Rectangular frame with eight bolts on its centre line: two rows of three, and two bolts between them.
 
     The rows lie at y = +-row_spacing/2 with bolts at x = -column_spacing/2, 0, +column_spacing/2.
     """
@@ -100,9 +100,11 @@ def frame_cells(frame_geometry: BoltedFrame) -> tuple[Array, Array]:
         solid &= np.hypot(x - bx, y - by) > 0.5 * frame_geometry.hole_diameter * EDGE_TOLERANCE_FACTOR
     area = 4.0 * outer[0] * outer[1] / solid.size
 
-    def sum_cell_values(values: Array) -> Array:
+    def sum_cell_values(subdivision_values: Array) -> Array:
         """Sum the values of the subdivisions of each cell."""
-        blocks = (values * solid).reshape(count[0], _CELL_SUBDIVISIONS, count[1], _CELL_SUBDIVISIONS)
+        blocks = (subdivision_values * solid).reshape(
+            count[0], _CELL_SUBDIVISIONS, count[1], _CELL_SUBDIVISIONS
+        )
         return np.asarray(blocks.sum(axis=(1, 3)).ravel())
 
     points = sum_cell_values(np.ones_like(x))

@@ -44,7 +44,7 @@ class PressureDistribution:
         return cls(share, np.column_stack([x, y]), *others)
 
     def select_nodes(self, node_indices: "slice | NDArray[np.intp]") -> "PressureDistribution":
-        """Distribution at a subset of the nodes, with unchanged shares."""
+        """Select a subset of the nodes, with unchanged shares; returns a new distribution."""
         return PressureDistribution(
             self.area_share[node_indices],
             self.position[node_indices],
@@ -141,23 +141,24 @@ MAX_PATCHES = 22
 """Largest number of friction patches of a joint [1], each with sliders."""
 
 
-def encode_nodal_field(distribution: PressureDistribution) -> dict[str, tuple[float, ...]]:
+def encode_nodal_field(pressure_distribution: PressureDistribution) -> dict[str, tuple[float, ...]]:
     """Encode points or friction patches as entries {name: values} of [field] in a parameter file."""
     rows = dict(
         zip(
             _POINT_ENTRIES,
             (
-                distribution.area_share,
-                *distribution.position.T,
-                distribution.preload_pressure_ratio,
-                distribution.moment_pressure_ratio,
+                pressure_distribution.area_share,
+                *pressure_distribution.position.T,
+                pressure_distribution.preload_pressure_ratio,
+                pressure_distribution.moment_pressure_ratio,
             ),
             strict=True,
         )
     )
-    if isinstance(distribution, FrictionPatches):
+    if isinstance(pressure_distribution, FrictionPatches):
         rows = {
-            PATCH_KEY_PREFIX + name: row for name, row in (rows | {"radius": distribution.radius}).items()
+            PATCH_KEY_PREFIX + name: row
+            for name, row in (rows | {"radius": pressure_distribution.radius}).items()
         }
     return {name: tuple(row.tolist()) for name, row in rows.items()}
 
@@ -241,7 +242,10 @@ class NodalField:
             )
 
     def _check_points(self, entry_prefix: str) -> None:
-        """Raise ValueError if the points (prefix "") or the patches do not balance, see the class."""
+        """Raise ValueError if lists of the points (prefix "") or patches differ in length or do not balance.
+
+        The balance of sums and means is that of the class.
+        """
         count = len(getattr(self, f"{entry_prefix}share"))
         for name in (*_POINT_ENTRIES, "radius") if entry_prefix and self.patch_radius else _POINT_ENTRIES:
             if (length := len(getattr(self, entry_prefix + name))) != count:
@@ -301,6 +305,6 @@ class NodalField:
         return replace(patches, radius=np.array(self.patch_radius)) if self.patch_radius else patches
 
     def _make_distribution(self, entry_prefix: str) -> PressureDistribution:
-        """Pressure distribution of the points (prefix "") or of the friction patches."""
+        """Make the pressure distribution of the points (prefix "") or of the friction patches."""
         share, x, y, equal, tilt = (np.array(getattr(self, entry_prefix + name)) for name in _POINT_ENTRIES)
         return PressureDistribution(share, np.column_stack([x, y]), equal, tilt)

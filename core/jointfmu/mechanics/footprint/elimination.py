@@ -20,22 +20,22 @@ CORRECTION_TOLERANCE = 1e-7
 """Norm over the largest norm [1] for linear dependence in the correction of sums; far above round-off."""
 
 
-def reduce_weights(node_values: Array, weights: Array) -> Array:
-    """New weights (n), at most d of them nonzero, with the same weighted sums of values (n, d).
+def reduce_weights(node_values: Array, node_weights: Array) -> Array:
+    """Reduce to at most d nonzero weights (n) that have the same weighted sums of values (n, d).
 
-    weights : (n) >= 0
+    node_weights : (n) >= 0
     """
     basis, orthonormal = select_independent(node_values, node_values.shape[1])
     rows = matrix_product(node_values, orthonormal)
     inverse = _invert_triangle(rows[basis])
-    basis_weights, out = weights[basis], np.zeros_like(weights)
+    basis_weights, out = node_weights[basis], np.zeros_like(node_weights)
     for node in np.setdiff1d(np.arange(len(node_values)), basis):
         share = linear_combination(rows[node], inverse)
-        leaving, transfer = _find_leaving_node(share, basis_weights, weights[node])
+        leaving, transfer = _find_leaving_node(share, basis_weights, node_weights[node])
         basis_weights = np.maximum(basis_weights + transfer * share, 0.0)
         if leaving is None:
             continue
-        basis_weights[leaving], basis[leaving] = weights[node] - transfer, node
+        basis_weights[leaving], basis[leaving] = node_weights[node] - transfer, node
         column = inverse[:, leaving] / share[leaving]
         inverse -= column[:, None] * share
         inverse[:, leaving] = column
@@ -80,12 +80,12 @@ def solve_linear(positive_definite_matrix: Array, right_hand_side: Array) -> Arr
     return out
 
 
-def weight_changes(weights: Array, function_values: Array, sum_changes: Array) -> Array:
-    """Smallest changes (n) of weights (n) that change the weighted sums of functions (m, n) as required (m).
+def weight_changes(node_weights: Array, function_values: Array, sum_changes: Array) -> Array:
+    """Smallest changes (n) of weights that give required changes (m) of weighted sums of functions (m, n).
 
     The sum of change^2/|weight| is minimal. Functions that depend linearly on others are ignored.
     """
-    root = np.sqrt(np.abs(weights))
+    root = np.sqrt(np.abs(node_weights))
     rows = function_values * root
     places, base = select_independent(rows, len(rows), CORRECTION_TOLERANCE)
     factors = weighted_sums(_invert_triangle(matrix_product(rows[places], base)), sum_changes[places])

@@ -65,7 +65,7 @@ MIN_OVER_MAX_NORMAL_DIAGONAL = 1e-9
 """Smallest diagonal entry of the normal equations used for damping, over the largest entry [1]."""
 EXACT_SUM_WEIGHT = 400.0
 """Weight of a sum that must be kept exactly, over the weight of a case of friction [1]."""
-RELATIVE_PERTURBATION = 1e-6
+RELATIVE_DIFFERENCE_STEP = 1e-6
 """Relative perturbation of a position or pressure for finite differences [1]."""
 NODES_PER_BATCH = 2000
 """Number of nodes whose friction is evaluated at once [1]."""
@@ -96,20 +96,22 @@ SLIDER_CIRCLE_POINTS = round_to_digits(
 
 
 def reduce_patches(
-    distribution: PressureDistribution, max_patch_count: int, start_points: PressureDistribution | None = None
+    pressure_distribution: PressureDistribution,
+    max_patch_count: int,
+    start_points: PressureDistribution | None = None,
 ) -> FrictionPatches:
     """Reduce the friction of a contact to few patches; one patch per node if it has no more nodes.
 
-    start_points : distribution from which the initial patches are selected; None: `distribution`
+    start_points : distribution from which the initial patches are selected; None: `pressure_distribution`
 
     The patches keep to round-off: the sums and first moments of share, preload_pressure_ratio and
     moment_pressure_ratio (weighted by share), and the second moments of share.
 
     Raises ValueError if max_patch_count is too small to keep these sums.
     """
-    if distribution.area_share.size <= max_patch_count:
-        return distribution.as_patches()
-    rough = round_distribution(distribution)
+    if pressure_distribution.area_share.size <= max_patch_count:
+        return pressure_distribution.as_patches()
+    rough = round_distribution(pressure_distribution)
     gyration = float(np.sqrt(np.add.reduce(rough.area_share * np.add.reduce(rough.position**2, axis=1))))
     highest = float(np.max(rough.preload_pressure_ratio))
     steep = max(float(np.max(np.abs(rough.moment_pressure_ratio))), SMALLEST_FLOAT)
@@ -127,7 +129,7 @@ def reduce_patches(
             ]
         )
         / unit
-        for each in (rough.as_patches(), distribution.as_patches(), first)
+        for each in (rough.as_patches(), pressure_distribution.as_patches(), first)
     )
     aim = _TargetSums.for_nodes(
         nodes, MAX_MOMENT_OVER_OPENING_MOMENT * largest_moment_factor(rough) * steep / highest
@@ -150,7 +152,9 @@ def _radius_signs(patch_forces: Array) -> Array:
     return np.where(rank_descending(patch_forces) % 2 == 0, 1.0, -1.0)
 
 
-def _divide_nodes_among_patches(distribution: PressureDistribution, patch_centres: Array) -> FrictionPatches:
+def _divide_nodes_among_patches(
+    pressure_distribution: PressureDistribution, patch_centres: Array
+) -> FrictionPatches:
     """Divide the nodes among m patches by Lloyd's method.
 
     Each node belongs to the nearest patch. Each patch then moves to the centre of the friction of its nodes;
@@ -158,15 +162,15 @@ def _divide_nodes_among_patches(distribution: PressureDistribution, patch_centre
 
     patch_centres : (m, 2) initial positions of the patches
     """
-    share, (x, y) = distribution.area_share, distribution.position.T
+    share, (x, y) = pressure_distribution.area_share, pressure_distribution.position.T
     weight, count = (
-        share * (distribution.preload_pressure_ratio + NODE_DIVISION_PRESSURE_OFFSET),
+        share * (pressure_distribution.preload_pressure_ratio + NODE_DIVISION_PRESSURE_OFFSET),
         len(patch_centres),
     )
 
-    def sum_over_nodes(values: Array) -> Array:
+    def sum_over_nodes(node_values: Array) -> Array:
         """Sum values (n) of the nodes over the nodes of each patch."""
-        return np.asarray(np.bincount(nearest, values, count))
+        return np.asarray(np.bincount(nearest, node_values, count))
 
     for _ in range(LLOYD_ITERATIONS):
         square = (x - patch_centres[:, :1]) ** 2 + (y - patch_centres[:, 1:]) ** 2
@@ -185,8 +189,8 @@ def _divide_nodes_among_patches(distribution: PressureDistribution, patch_centre
     return FrictionPatches(
         area,
         patch_centres,
-        sum_over_nodes(share * distribution.preload_pressure_ratio) / area,
-        sum_over_nodes(share * distribution.moment_pressure_ratio) / area,
+        sum_over_nodes(share * pressure_distribution.preload_pressure_ratio) / area,
+        sum_over_nodes(share * pressure_distribution.moment_pressure_ratio) / area,
         radius,
     )
 
@@ -416,9 +420,11 @@ class _LinearisedFit:
         slopes = [function_values * share]
         for place in range(1, 5):
             moved = points.copy()
-            moved[place] += RELATIVE_PERTURBATION * size[place]
+            moved[place] += RELATIVE_DIFFERENCE_STEP * size[place]
             slopes.append(
-                (fit_target.evaluate_sum_functions(moved) - function_values) / RELATIVE_PERTURBATION * share
+                (fit_target.evaluate_sum_functions(moved) - function_values)
+                / RELATIVE_DIFFERENCE_STEP
+                * share
             )
         slope = np.concatenate(slopes, axis=1).T.copy()
         return cls(residual, size, gram_matrix(slope), weighted_sums(slope, residual))

@@ -208,7 +208,7 @@ def _bolt_distance(plate: BoltedPlate, centres: Array, cell_sides: Array) -> Arr
 
 
 def _remove_holes(plate: BoltedPlate, centres: Array, cell_sides: Array) -> tuple[Array, Array]:
-    """Areas [m2] and centroids [m] of cells without the holes; cells inside a hole are omitted."""
+    """Subtract the holes from cells: areas [m2] and centroids [m]; cells inside a hole are omitted."""
     positions = (np.arange(_HOLE_SUBDIVISIONS) + 0.5) / _HOLE_SUBDIVISIONS - 0.5
     grid = np.stack(np.meshgrid(positions, positions, indexing="ij"), -1).reshape(-1, 2)
     areas, centroids = np.prod(cell_sides, axis=1), centres.copy()

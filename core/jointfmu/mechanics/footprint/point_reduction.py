@@ -48,7 +48,7 @@ _LOW_DISCREPANCY_INCREMENTS = successive_powers(1.0 / 1.1673039782614187, 4)
 """Increments of a low-discrepancy sequence in four dimensions [1]: powers of 1/x with x^5 = x + 1."""
 
 
-def reduce_points(distribution: PressureDistribution, max_point_count: int) -> PressureDistribution:
+def reduce_points(pressure_distribution: PressureDistribution, max_point_count: int) -> PressureDistribution:
     """Reduce a pressure distribution to at most `max_point_count` of its nodes with other shares.
 
     Returns the distribution itself if it has no more nodes. The points keep to round-off: the sums and first
@@ -59,15 +59,15 @@ def reduce_points(distribution: PressureDistribution, max_point_count: int) -> P
 
     Raises ValueError if max_point_count is too small to keep the sums.
     """
-    if distribution.area_share.size <= max_point_count:
-        return distribution
-    rounded_shape = round_distribution(distribution)
+    if pressure_distribution.area_share.size <= max_point_count:
+        return pressure_distribution
+    rounded_shape = round_distribution(pressure_distribution)
     group = _find_symmetry_groups(rounded_shape)
     if np.max(np.bincount(group)) * MIN_SYMMETRY_GROUPS > max_point_count:
-        group = np.arange(distribution.area_share.size)
+        group = np.arange(pressure_distribution.area_share.size)
     nodes, factor = _select_node_groups(rounded_shape, group, max_point_count)
-    old_shares = _sum_over_groups(group, distribution.area_share)
-    exact = _average_over_groups(_scaled_exact_functions(distribution), distribution, group)
+    old_shares = _sum_over_groups(group, pressure_distribution.area_share)
+    exact = _average_over_groups(_scaled_exact_functions(pressure_distribution), pressure_distribution, group)
     new_shares, exact_nodes = np.zeros_like(old_shares), exact[:, nodes]
     new_shares[nodes] = factor * old_shares[nodes]
     new_shares[nodes] += weight_changes(
@@ -75,27 +75,32 @@ def reduce_points(distribution: PressureDistribution, max_point_count: int) -> P
         exact_nodes,
         weighted_sums(exact, old_shares) - weighted_sums(exact_nodes, new_shares[nodes]),
     )
-    return clear_round_off(_scale_shares(distribution, group, new_shares / old_shares))
+    return clear_round_off(_scale_shares(pressure_distribution, group, new_shares / old_shares))
 
 
 def _select_node_groups(
-    distribution: PressureDistribution, node_groups: NodeIndices, max_node_count: int
+    pressure_distribution: PressureDistribution, node_groups: NodeIndices, max_node_count: int
 ) -> tuple[NodeIndices, Array]:
     """Select groups of nodes that keep the sums; return the groups and the factors on their shares.
 
     node_groups : (n) group of each node
     """
-    size, share = np.bincount(node_groups), _sum_over_groups(node_groups, distribution.area_share)
+    size, share = np.bincount(node_groups), _sum_over_groups(node_groups, pressure_distribution.area_share)
     factor = np.sqrt(share)
     exact = select_independent(
-        factor * _average_over_groups(_scaled_exact_functions(distribution), distribution, node_groups),
+        factor
+        * _average_over_groups(
+            _scaled_exact_functions(pressure_distribution), pressure_distribution, node_groups
+        ),
         share.size,
     )[1]
-    rest = factor * _average_over_groups(_sample_load_functions(distribution), distribution, node_groups)
+    rest = factor * _average_over_groups(
+        _sample_load_functions(pressure_distribution), pressure_distribution, node_groups
+    )
     rest -= matrix_product(matrix_product(rest, exact), exact.T)
     functions = np.concatenate([exact, select_independent(rest, max_node_count)[1]]).T / factor[:, None]
     min_shares = (
-        _minimum_shares(distribution, node_groups, share)
+        _minimum_shares(pressure_distribution, node_groups, share)
         if max_node_count >= MIN_POINTS_FOR_PEAK_NODES
         else np.zeros_like(share)
     )
@@ -116,21 +121,21 @@ def _select_node_groups(
 
 
 def _minimum_shares(
-    distribution: PressureDistribution, node_groups: NodeIndices, group_shares: Array
+    pressure_distribution: PressureDistribution, node_groups: NodeIndices, group_shares: Array
 ) -> Array:
     """Smallest shares (groups) [1] that the groups must keep: nonzero for nodes with the largest pressure."""
     min_shares = np.zeros_like(group_shares)
-    peak_groups = np.unique(node_groups[find_peak_nodes(distribution)])
+    peak_groups = np.unique(node_groups[find_peak_nodes(pressure_distribution)])
     min_shares[peak_groups] = MIN_PEAK_SHARE_FACTOR * group_shares[peak_groups]
     return min_shares
 
 
 def _scale_shares(
-    distribution: PressureDistribution, node_groups: NodeIndices, group_factors: Array
+    pressure_distribution: PressureDistribution, node_groups: NodeIndices, group_factors: Array
 ) -> PressureDistribution:
     """Multiply shares of nodes by the factor (groups) [1] of their group; remove nodes with factor zero."""
     nodes = np.flatnonzero(group_factors[node_groups] > 0.0)
-    selected = distribution.select_nodes(nodes)
+    selected = pressure_distribution.select_nodes(nodes)
     return PressureDistribution(
         selected.area_share * group_factors[node_groups[nodes]],
         selected.position,
@@ -139,21 +144,21 @@ def _scale_shares(
     )
 
 
-def _find_symmetry_groups(distribution: PressureDistribution) -> NodeIndices:
+def _find_symmetry_groups(pressure_distribution: PressureDistribution) -> NodeIndices:
     """Symmetry group (n) of each node: its mirror images at x = 0, y = 0 or both, if every node has an image.
 
     The pressure by moment of a mirror image at y = 0 has the opposite sign.
     """
-    share = distribution.area_share
-    x, y = distribution.position.T
-    equal = distribution.preload_pressure_ratio
-    tilt = distribution.moment_pressure_ratio
+    share = pressure_distribution.area_share
+    x, y = pressure_distribution.position.T
+    equal = pressure_distribution.preload_pressure_ratio
+    tilt = pressure_distribution.moment_pressure_ratio
 
     def mirrored_node_keys(x_sign: float, y_sign: float) -> Array:
         """Rounded numbers of the nodes, mirrored by the signs; equal keys are mirror images."""
         return np.column_stack([x_sign * x, y_sign * y, share, equal, y_sign * tilt]) + 0.0  # no -0.0
 
-    own_keys, group = mirrored_node_keys(1.0, 1.0), np.arange(distribution.area_share.size)
+    own_keys, group = mirrored_node_keys(1.0, 1.0), np.arange(pressure_distribution.area_share.size)
     order = np.lexsort(own_keys.T)
     for sides in ((-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)):
         image = mirrored_node_keys(*sides)
@@ -166,11 +171,11 @@ def _find_symmetry_groups(distribution: PressureDistribution) -> NodeIndices:
 
 
 def _average_over_groups(
-    function_values: Array, distribution: PressureDistribution, node_groups: NodeIndices
+    function_values: Array, pressure_distribution: PressureDistribution, node_groups: NodeIndices
 ) -> Array:
     """Means (m, groups) of functions (m, n) over the nodes of each group, weighted by share."""
-    sums = [_sum_over_groups(node_groups, distribution.area_share * row) for row in function_values]
-    return np.array(sums) / _sum_over_groups(node_groups, distribution.area_share)
+    sums = [_sum_over_groups(node_groups, pressure_distribution.area_share * row) for row in function_values]
+    return np.array(sums) / _sum_over_groups(node_groups, pressure_distribution.area_share)
 
 
 def _sum_over_groups(node_groups: NodeIndices, node_values: Array) -> Array:
@@ -178,11 +183,11 @@ def _sum_over_groups(node_groups: NodeIndices, node_values: Array) -> Array:
     return np.asarray(np.bincount(node_groups, node_values), dtype=np.float64)
 
 
-def _scale_positions(distribution: PressureDistribution) -> tuple[Array, Array]:
-    """Coordinates x and y (n) of the nodes over their largest absolute values [1]."""
+def _scale_positions(pressure_distribution: PressureDistribution) -> tuple[Array, Array]:
+    """Divide coordinates x and y (n) of the nodes by their largest absolute values [1]."""
     x, y = (
         values / max(float(np.max(np.abs(values))), np.finfo(float).tiny)
-        for values in distribution.position.T
+        for values in pressure_distribution.position.T
     )
     return x, y
 
@@ -210,41 +215,48 @@ def exact_sum_functions(
     )
 
 
-def _scaled_exact_functions(distribution: PressureDistribution) -> Array:
+def _scaled_exact_functions(pressure_distribution: PressureDistribution) -> Array:
     """Functions (12, n) of the nodes whose sums are kept, see `exact_sum_functions`; of the order of 1."""
-    steep = max(float(np.max(np.abs(distribution.moment_pressure_ratio))), 1.0)
+    steep = max(float(np.max(np.abs(pressure_distribution.moment_pressure_ratio))), 1.0)
     return exact_sum_functions(
-        *_scale_positions(distribution),
-        distribution.preload_pressure_ratio,
-        distribution.moment_pressure_ratio / steep,
+        *_scale_positions(pressure_distribution),
+        pressure_distribution.preload_pressure_ratio,
+        pressure_distribution.moment_pressure_ratio / steep,
     )
 
 
-def largest_moment_factor(distribution: PressureDistribution) -> float:
+def largest_moment_factor(pressure_distribution: PressureDistribution) -> float:
     """Factor [1] on the pressure by moment at which opening removes MAX_LOST_FORCE_SHARE of the force."""
-    low, high = 0.0, 2.0 / float(np.max(np.abs(distribution.area_share * distribution.moment_pressure_ratio)))
+    low, high = (
+        0.0,
+        2.0
+        / float(
+            np.max(np.abs(pressure_distribution.area_share * pressure_distribution.moment_pressure_ratio))
+        ),
+    )
     for _ in range(50):
         middle = 0.5 * (low + high)
         open_to = np.stack(
             [
-                side * middle * distribution.moment_pressure_ratio - distribution.preload_pressure_ratio
+                side * middle * pressure_distribution.moment_pressure_ratio
+                - pressure_distribution.preload_pressure_ratio
                 for side in (-1.0, 1.0)
             ]
         )
-        lost_share = np.max(weighted_sums(np.maximum(open_to, 0.0), distribution.area_share))
+        lost_share = np.max(weighted_sums(np.maximum(open_to, 0.0), pressure_distribution.area_share))
         low, high = (middle, high) if lost_share < MAX_LOST_FORCE_SHARE else (low, middle)
     return low
 
 
-def _sample_load_functions(distribution: PressureDistribution) -> Array:
+def _sample_load_functions(pressure_distribution: PressureDistribution) -> Array:
     """Functions (m, n) [1] of the nodes whose sums are approximated: pressure and stiffness in all states.
 
     Each state has a power law, a moment, a normal displacement and a tilt. The pressure is multiplied by 1, x
     and y (normal force, moments) and by the distance from the centre (friction moment in a rotation about the
     normal); the stiffness by 1, x, y, x^2, x y and y^2.
     """
-    (x, y), limit = _scale_positions(distribution), largest_moment_factor(distribution)
-    distance = np.sqrt(np.add.reduce(distribution.position**2, axis=1))
+    (x, y), limit = _scale_positions(pressure_distribution), largest_moment_factor(pressure_distribution)
+    distance = np.sqrt(np.add.reduce(pressure_distribution.position**2, axis=1))
     of_pressure = np.stack([np.ones_like(x), x, y, distance / np.max(distance)])
     of_stiffness = np.stack([*of_pressure[:3], x * x, x * y, y * y])
     number = np.arange(SAMPLED_STATE_COUNT)[:, None]
@@ -258,7 +270,9 @@ def _sample_load_functions(distribution: PressureDistribution) -> Array:
     )
     approach = take_power_of_two_root(
         np.maximum(
-            distribution.preload_pressure_ratio + limit * moment * distribution.moment_pressure_ratio, 0.0
+            pressure_distribution.preload_pressure_ratio
+            + limit * moment * pressure_distribution.moment_pressure_ratio,
+            0.0,
         ),
         power,
     )
@@ -266,18 +280,23 @@ def _sample_load_functions(distribution: PressureDistribution) -> Array:
     pressure = raise_to_power_of_two(approach, power)
     stiffness = np.divide(pressure, approach, out=np.zeros_like(pressure), where=approach > 0.0)
     rows = np.concatenate([pressure[:, None] * of_pressure, stiffness[:, None] * of_stiffness], axis=1)
-    sizes = np.add.reduce(np.abs(rows) * distribution.area_share, axis=2, keepdims=True)
+    sizes = np.add.reduce(np.abs(rows) * pressure_distribution.area_share, axis=2, keepdims=True)
     rows *= np.where(is_moved, DISPLACED_STATE_WEIGHT, 1.0)[:, None] / np.maximum(sizes, np.finfo(float).tiny)
     return np.asarray(rows.reshape(-1, x.size))
 
 
-def find_peak_nodes(distribution: PressureDistribution) -> NodeIndices:
+def find_peak_nodes(pressure_distribution: PressureDistribution) -> NodeIndices:
     """Indices of the nodes that have the largest pressure at any of several moments."""
     steep = 0.01 * successive_powers(1.25, 36)
     moments = np.concatenate([-steep, [0.0], steep])
     return np.unique(
         [
-            int(np.argmax(distribution.preload_pressure_ratio + m * distribution.moment_pressure_ratio))
+            int(
+                np.argmax(
+                    pressure_distribution.preload_pressure_ratio
+                    + m * pressure_distribution.moment_pressure_ratio
+                )
+            )
             for m in moments
         ]
     )

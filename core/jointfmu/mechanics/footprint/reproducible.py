@@ -27,7 +27,7 @@ ROUND_OFF_OVER_LARGEST_NUMBER = 2.0**-46
 
 
 def round_distribution(
-    distribution: PressureDistribution, binary_digits: int = BINARY_DIGITS
+    pressure_distribution: PressureDistribution, binary_digits: int = BINARY_DIGITS
 ) -> PressureDistribution:
     """Round a pressure distribution to a number of significant binary digits.
 
@@ -36,14 +36,14 @@ def round_distribution(
     Numbers are rounded up from slightly above half a step, where no short fraction lies. Rounding is
     symmetric about zero, so a symmetric distribution stays symmetric.
     """
-    mantissa, exponent = np.frexp(distribution.area_share)
+    mantissa, exponent = np.frexp(pressure_distribution.area_share)
     share = np.ldexp(_round_to_steps(mantissa, binary_digits), exponent)
     rounded_values = (
         round_to_digits(values, binary_digits)
         for values in (
-            distribution.position,
-            distribution.preload_pressure_ratio,
-            distribution.moment_pressure_ratio,
+            pressure_distribution.position,
+            pressure_distribution.preload_pressure_ratio,
+            pressure_distribution.moment_pressure_ratio,
         )
     )
     return PressureDistribution(share, *rounded_values)
@@ -66,7 +66,7 @@ def _round_to_steps(values: Array, binary_digits: int) -> Array:
     return np.asarray(np.ldexp(np.copysign(sizes, values) + 0.0, -binary_digits))
 
 
-def clear_round_off(distribution: PressureDistribution) -> PressureDistribution:
+def clear_round_off(pressure_distribution: PressureDistribution) -> PressureDistribution:
     """Replace numbers of a pressure distribution that are only round-off by exact zeros.
 
     The limit is ROUND_OFF_OVER_LARGEST_NUMBER.
@@ -76,12 +76,12 @@ def clear_round_off(distribution: PressureDistribution) -> PressureDistribution:
         """Replace small values of one array by zeros."""
         return np.where(np.abs(values) > ROUND_OFF_OVER_LARGEST_NUMBER * np.max(np.abs(values)), values, 0.0)
 
-    position = np.column_stack([clear_small_values(values) for values in distribution.position.T])
+    position = np.column_stack([clear_small_values(values) for values in pressure_distribution.position.T])
     return PressureDistribution(
-        distribution.area_share,
+        pressure_distribution.area_share,
         position,
-        clear_small_values(distribution.preload_pressure_ratio),
-        clear_small_values(distribution.moment_pressure_ratio),
+        clear_small_values(pressure_distribution.preload_pressure_ratio),
+        clear_small_values(pressure_distribution.moment_pressure_ratio),
     )
 
 
@@ -124,9 +124,9 @@ def euclidean_norm(vector: Array) -> float:
     return float(np.sqrt(np.add.reduce(vector * vector)))
 
 
-def successive_powers(base: float, count: int) -> Array:
+def successive_powers(power_base: float, power_count: int) -> Array:
     """Powers (count) of a number: base, base^2, ..., base^count."""
-    return np.multiply.accumulate(np.full(count, base))
+    return np.multiply.accumulate(np.full(power_count, power_base))
 
 
 def take_power_of_two_root(values: Array, exponent: Array) -> Array:

@@ -80,7 +80,7 @@ def find_bolt_positions(
         return positions if len(positions) == parameter_file.values.n_bolts and inside else None
     stated = np.array(
         [
-            parse_numbers("bolts", text, "mm", "m", separator=",", count=2, lower_bound=None)
+            parse_numbers("bolts", text, "mm", "m", separator=",", number_count=2, lower_bound=None)
             for text in args.bolts
         ]
     )

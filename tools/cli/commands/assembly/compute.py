@@ -143,7 +143,7 @@ def tightening_force(args: argparse.Namespace, parameter_file: ParameterFile) ->
 
 
 def _collect_results(solution: "JointSolution", moment: float, preload: float) -> dict[str, Any]:
-    """Results of the computed contact pressure as a JSON object."""
+    """Collect the results of the computed contact pressure in a JSON object."""
     field = solution.contact_field
     places, between = solution.pressure_between_bolts
     return {

@@ -170,7 +170,7 @@ def _create_reader(args: argparse.Namespace) -> Any:
 def _collect_results(
     args: argparse.Namespace, parameter_file: ParameterFile, field: "ContactField", reduction: "Reduction"
 ) -> dict[str, Any]:
-    """Results of the imported pressure field as a JSON object."""
+    """Collect the results of the imported pressure field in a JSON object."""
     joint = parameter_file.values
     return {
         "file": str(args.file),

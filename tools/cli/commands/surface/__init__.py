@@ -152,7 +152,7 @@ def _run_identify(args: argparse.Namespace) -> CommandResult:
 
 
 def _load_table_default(joint: str, scans: list[Path]) -> ParameterFile:
-    """Default file of a joint with the law `table`, named after the scans."""
+    """Read the default file of a joint with the law `table`, and name it after the scans."""
     name = f"{load_default(joint).name}, interface of {' and '.join(path.name for path in scans)}"
     return replace(load_default(joint, TABLE_LAW), roughness={}, name=name)
 

@@ -30,7 +30,7 @@ def results_to_json(
     identified_surface: Identification,
     heights: Sequence[Heights],
     parameter_file: ParameterFile | None,
-    points: InterfacePoints | None,
+    interface_points: InterfacePoints | None,
     args: argparse.Namespace,
 ) -> dict[str, object]:
     """JSON object of all results of `jointfmu surface`, in SI units.
@@ -64,22 +64,22 @@ def results_to_json(
         },
         "joints": {joint: _joint_parameters_to_json(identified_surface, joint, args) for joint in joints},
         "law": parameter_file.law if parameter_file else None,
-        "table": _points_to_json(points) if points else None,
+        "table": _points_to_json(interface_points) if interface_points else None,
         "level": judged["level"],
         "written": str(args.out) if args.out else None,
         "warnings": [*collect_warnings(identified_surface, parameter_file, args), *judged["warnings"]],
     }
 
 
-def _points_to_json(points: InterfacePoints) -> dict[str, object]:
+def _points_to_json(interface_points: InterfacePoints) -> dict[str, object]:
     """JSON object of the points of stiffness over pressure."""
     return {
-        "pressure": points.pressure.tolist(),
-        "stiffness": points.stiffness.tolist(),
-        "ratio": points.ratio,
-        "range": list(points.factor_range),
-        "at_hardness": points.plastic_area_share.tolist() or None,
-        "source": points.source,
+        "pressure": interface_points.pressure.tolist(),
+        "stiffness": interface_points.stiffness.tolist(),
+        "ratio": interface_points.shear_stiffness_ratio,
+        "range": list(interface_points.factor_range),
+        "at_hardness": interface_points.plastic_area_share.tolist() or None,
+        "source": interface_points.source,
     }
 
 
@@ -210,13 +210,13 @@ def build_result(
     identified_surface: Identification,
     heights: Sequence[Heights],
     parameter_file: ParameterFile | None,
-    points: InterfacePoints | None,
+    interface_points: InterfacePoints | None,
     args: argparse.Namespace,
 ) -> CommandResult:
     """Build the printed result of `jointfmu surface`: lines, table and warnings.
 
-    parameter_file : parameter file with the identified surface, if one is made
-    points         : stiffness over pressure, if it is computed
+    parameter_file   : parameter file with the identified surface, if one is made
+    interface_points : stiffness over pressure, if it is computed
     """
     lines = [
         f"{surface.name}: {synthesize.format_size(surface)}; {_format_scan(scan)}"
@@ -224,8 +224,8 @@ def build_result(
     ]
     lines.append(_format_stiffness(identified_surface, parameter_file))
     lines.append(_format_tail(identified_surface))
-    if points and args.solve:
-        lines += _format_solution(points)
+    if interface_points and args.solve:
+        lines += _format_solution(interface_points)
     if len(heights) == 2:
         lines.append("equivalent surface of the pair: structure functions and spectra added")
     lines += [f"repaired in {name}: {repair}" for name, repair in identified_surface.repairs]
@@ -246,7 +246,7 @@ def build_result(
         *collect_warnings(identified_surface, parameter_file, args),
     ]
     return CommandResult(
-        json_document=results_to_json(identified_surface, heights, parameter_file, points, args),
+        json_document=results_to_json(identified_surface, heights, parameter_file, interface_points, args),
         lines=[*lines, *(f"{prefix}{line}" for line in judgement.format_lines())],
         notes=[f"warning: {text}" for text in texts],
         written_files=(args.out, args.table, args.plot),
@@ -275,14 +275,19 @@ def _format_tail(identified_surface: Identification) -> str:
     )
 
 
-def _format_solution(points: InterfacePoints) -> list[str]:
+def _format_solution(interface_points: InterfacePoints) -> list[str]:
     """Table of the stiffness by boundary elements, and what a scan cannot determine."""
     heads = ("p [MPa]", "k [N/m3]", "at the hardness")
     rows = [
         (f"{p / 1e6:.3g}", f"{k:.3g}", f"{100.0 * share:.0f} %")
-        for p, k, share in zip(points.pressure, points.stiffness, points.plastic_area_share, strict=True)
+        for p, k, share in zip(
+            interface_points.pressure,
+            interface_points.stiffness,
+            interface_points.plastic_area_share,
+            strict=True,
+        )
     ]
-    low, high = points.factor_range
+    low, high = interface_points.factor_range
     return [
         *align_columns([heads, *rows]),
         f"boundary elements; sub-areas: {low:.2f} to {high:.2f} times their mean",

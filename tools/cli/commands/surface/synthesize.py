@@ -76,7 +76,7 @@ def _check_memory(args: argparse.Namespace) -> None:
 
 
 def _make_heights(args: argparse.Namespace) -> Heights:
-    """Heights [m] of the surface that the options describe."""
+    """Make the heights [m] of the surface that the options describe."""
     count = 2 if args.shape == "textured" else 1
     for name, values in (("D", args.D), ("G", args.G)):
         if len(values) != count:

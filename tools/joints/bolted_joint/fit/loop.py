@@ -245,7 +245,7 @@ def fit(
         )
 
     def make_joint(parameter_values: Mapping[str, float]) -> AnyBoltedJoint:
-        """Joint with values of the fitted parameters."""
+        """Make the joint with values of the fitted parameters."""
         parameters: AnyBoltedJoint = file.with_values(
             _joint_parameters(parameter_values), "calibration", "fit"
         ).values
@@ -258,7 +258,7 @@ def fit(
     reach = TABLE_END_OVER_LOOP_AMPLITUDE * data.amplitude if data.kind == "loops" else np.inf
 
     def make_law(parameter_values: Mapping[str, float]) -> HysteresisLaw:
-        """Hysteresis law in shear of joint and structure, for values of the fitted parameters."""
+        """Make the hysteresis law in shear of joint and structure, for values of the fitted parameters."""
         set_status_text(
             "tries " + ", ".join(f"{name} = {value:.4g}" for name, value in parameter_values.items())
         )

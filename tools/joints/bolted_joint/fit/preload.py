@@ -170,8 +170,8 @@ def fit(
     )
     kN = COLUMN_UNITS["preload"]["kN"]
     picture = FitPlot(
-        data_x=curve.preload / kN,
-        data_y=curve.measured_values * size,
+        measured_x=curve.preload / kN,
+        measured_y=curve.measured_values * size,
         misfit=100.0 * np.expm1(-solution.residuals),
         law_curve=(grid / kN, finer.predict(result.values, stiffness, direction) * size),
         axis_labels=("preload of each bolt [kN]", f"{curve.quantity_name} [{unit}]", "data / law - 1 [%]"),

@@ -156,7 +156,7 @@ temperature [K]."""
 def _make_records(
     parameter_file: ParameterFile, working_points: Sequence[WorkingPoint]
 ) -> list[ModelicaRecord]:
-    """Modelica records of a parameter file, one for each working point."""
+    """Make the Modelica records of a parameter file, one for each working point."""
     spring = BoltedJointSpring.for_interface_nodes(parameter_file.values)
     return [_make_record(parameter_file.name, spring, *point) for point in working_points]
 
@@ -164,7 +164,7 @@ def _make_records(
 def _make_record(
     record_name: str, spring: BoltedJointSpring, preload: float, moment: float, temperature: float
 ) -> ModelicaRecord:
-    """Modelica record of a bolted joint at one working point."""
+    """Make the Modelica record of a bolted joint at one working point."""
     tight = combine_nodes(spring, spring.preload_at_temperature(preload, temperature), moment)
     rest = spring.evaluate(preload, moment, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), temperature=temperature)
     values = format_parameter_values(

@@ -61,13 +61,13 @@ def bolt_positions(options: DrawingOptions, bolt_count: int) -> Array:
         return _parse_positions(texts, bolt_count)
     if len(texts) > 1:
         raise ValueError(f"--at = {texts[0]!r} and more: expected one LxW, or the place X,Y of each bolt")
-    spans = parse_values("at", texts[0], separator="x", count=2)
+    spans = parse_values("at", texts[0], separator="x", value_count=2)
     return _grid_positions(spans, bolt_count, options["grid"])
 
 
 def _parse_positions(position_texts: Sequence[str], bolt_count: int) -> Array:
     """Parse positions X,Y of bolts in mm: (count, 2) [m]."""
-    places = [parse_values("at", text, separator=",", count=2) for text in position_texts]
+    places = [parse_values("at", text, separator=",", value_count=2) for text in position_texts]
     if len(places) != bolt_count:
         raise ValueError(f"--at has {len(places)} places, expected {bolt_count}: one for each of --bolts")
     return np.array(places)

@@ -103,7 +103,7 @@ def read_drawing(options: DrawingOptions) -> DrawnJoint:
 
     Raises ValueError with a one-line message for options that are invalid or contradict each other.
     """
-    length, width = parse_values("plate", options["plate"], separator="x", count=2)
+    length, width = parse_values("plate", options["plate"], separator="x", value_count=2)
     count, thread = layout.parse_bolts(options["bolts"])
     positions = layout.bolt_positions(options, count)
     sheet = ParameterSheet(KIND.name, faces.find_law(options))
@@ -177,10 +177,10 @@ def make_joint(options: DrawingOptions) -> NewJoint:
             "the FMU is the interface alone; for the complete joint state --thickness of both plates"
         )
     facts |= {**tightening.facts(), **joint.facts, **_preload_range_facts(joint.file)}
-    if tightening.has_range and not tightening.low > loss:
+    if tightening.has_range and not tightening.min_force > loss:
         warnings.append(
-            f"embedding takes {loss:.4g} N, but the preload may be {tightening.low:.4g} N: the joint may be "
-            "loose"
+            f"embedding takes {loss:.4g} N, but the preload may be {tightening.min_force:.4g} N: the joint "
+            "may be loose"
         )
     return NewJoint(joint.file, facts, [*warnings, *joint.warnings])
 
@@ -277,7 +277,7 @@ def clamp_bolt(
 
 
 def _clamped_thicknesses(options: DrawingOptions) -> list[float]:
-    """Thickness [m] of each plate, or one value for both plates together."""
+    """Clamped thicknesses [m]: of each plate, or their sum as one value."""
     grip = [parse_value("grip", text) for text in options["grip"]]
     if options["thickness"] is None:
         return grip
@@ -368,7 +368,7 @@ def _add_thermal_parameters(parameter_sheet: ParameterSheet, clamped_bolt: Clamp
     """
     steel = find_row("materials", "steel")
     alpha, text = steel.numbers["alpha"], "bolts of steel" + (" with washers" if clamped_bolt.washers else "")
-    parameter_sheet.add_parameter("bolt.alpha", alpha.value, alpha.kind, f"{text}: {alpha.source}")
+    parameter_sheet.add_parameter("bolt.alpha", alpha.value, alpha.origin, f"{text}: {alpha.source}")
     plates = 1.0 / (1.0 / clamped_bolt.member_stiffness - clamped_bolt.washer_compliance)
     text = "VDI 2230, 1/delta_P" + (" without the washers" if clamped_bolt.washers else "")
     parameter_sheet.add_parameter("plate_stiffness", plates, "derived", text)

@@ -190,7 +190,7 @@ def _mesh_changes(fine: Compliances, coarse: Compliances) -> dict[str, float]:
 
 
 def _describe_mesh_changes(mesh_changes: dict[str, float]) -> str:
-    """Text about the error of the finite elements, estimated by two meshes."""
+    """Describe the error of the finite elements, estimated by two meshes."""
     changes = ", ".join(f"{name} {change:+.1%}" for name, change in mesh_changes.items())
     return f"change from a mesh with elements of twice the size, an estimate of the error: {changes}"
 
@@ -206,7 +206,7 @@ def _contact_outline(assembly: "Assembly", centroid: Array) -> tuple[float, ...]
 def set_elastic_bodies(
     parameter_file: ParameterFile, bodies: ElasticBodies, attachment: str
 ) -> ParameterFile:
-    """Parameters of the joint with elastic sides, described by `bodies`."""
+    """Set the parameters of elastic sides in a parameter file, from `bodies`."""
     values = replace(parameter_file.values, sides="elastic", bodies=replace(bodies, attached=attachment))
     source = f"finite elements of the bodies between {ATTACHMENTS[attachment]}, reduced to modes"
     names = [f"bodies.{name}" for name, value in flatten_parameters(bodies).items() if value != ()]

@@ -23,18 +23,18 @@ DEFAULT_METHOD = "torque-wrench"
 class AssemblyPreload:
     """Assembly preload of each bolt.
 
-    force       : F_M [N], the mean if it scatters
-    low, high   : range of the force [N]; both equal `force` if none is known
-    kind        : origin of the value, see parameters.ORIGINS
-    source      : source of value and range
-    utilisation : comparative stress over yield strength [1] at `force`; None: property class not stated
-    warnings    : one line each
+    force                : F_M [N], the mean if it scatters
+    min_force, max_force : range of the force [N]; both equal `force` if none is known
+    origin               : origin of the value, see parameters.ORIGINS
+    source               : source of value and range
+    utilisation          : comparative stress over yield strength [1] at `force`; None: unknown property class
+    warnings             : one line each
     """
 
     force: float
-    low: float
-    high: float
-    kind: str
+    min_force: float
+    max_force: float
+    origin: str
     source: str
     utilisation: float | None = None
     warnings: tuple[str, ...] = ()
@@ -42,20 +42,20 @@ class AssemblyPreload:
     @property
     def has_range(self) -> bool:
         """Whether a range of the assembly preload is known."""
-        return self.high > self.low
+        return self.max_force > self.min_force
 
     def add_to(self, parameter_sheet: ParameterSheet) -> None:
         """Add the start value of the input `preload` to the sheet, with its range."""
-        parameter_sheet.add_parameter("inputs.preload", self.force, self.kind, self.source)
+        parameter_sheet.add_parameter("inputs.preload", self.force, self.origin, self.source)
         if self.has_range:
-            parameter_sheet.set_parameter_range("inputs.preload", self.low, self.high)
+            parameter_sheet.set_parameter_range("inputs.preload", self.min_force, self.max_force)
 
     def facts(self) -> dict[str, tuple[float, str, str]]:
         """Facts for the user: range of the preload and utilisation of the yield strength, as far as known."""
         facts = {}
         if self.has_range:
-            facts["preload_low"] = (self.low, "N", "lower end of the range of the preload")
-            facts["preload_high"] = (self.high, "N", "upper end of the range of the preload")
+            facts["preload_low"] = (self.min_force, "N", "lower end of the range of the preload")
+            facts["preload_high"] = (self.max_force, "N", "upper end of the range of the preload")
         if self.utilisation is not None:
             text = (
                 "share of the yield strength that tension and torsion use in tightening (von Mises, VDI "
@@ -143,9 +143,9 @@ def _preload_from_torque(
     high = force(torque.high, mu_G.low, mu_K.low)
     return AssemblyPreload(
         preload.force,
-        min(preload.low, low),
-        max(preload.high, high),
-        preload.kind,
+        min(preload.min_force, low),
+        max(preload.max_force, high),
+        preload.origin,
         f"{preload.source}; friction alone: {low * 1e-3:.4g} to {high * 1e-3:.4g} kN",
     )
 
@@ -169,13 +169,13 @@ def _scatter(preload: AssemblyPreload, method: TighteningMethod) -> AssemblyPrel
 
     The scatter is that of the greatest alpha_A in Table A8 of VDI 2230.
     """
-    least, greatest = method.factor
+    least, greatest = method.tightening_factors
     scatter = vdi2230.preload_scatter(greatest)
     return AssemblyPreload(
         preload.force,
-        preload.low * (1.0 - scatter),
-        preload.high * (1.0 + scatter),
-        preload.kind,
+        preload.min_force * (1.0 - scatter),
+        preload.max_force * (1.0 + scatter),
+        preload.origin,
         f"{preload.source}; {method.title}: alpha_A = {least:g} to {greatest:g} (VDI 2230, Table A8), "
         f"+-{scatter:.0%}",
     )
@@ -184,7 +184,7 @@ def _scatter(preload: AssemblyPreload, method: TighteningMethod) -> AssemblyPrel
 def _check_strength(
     options: DrawingOptions, preload: AssemblyPreload, thread: Thread, thread_friction: float
 ) -> AssemblyPreload:
-    """Assembly preload with its utilisation of the yield strength, and a warning if this is too high.
+    """Add the utilisation of the yield strength to an assembly preload, and a warning if it is too high.
 
     A preload above the proof load is warned of by `common.pressure`.
 

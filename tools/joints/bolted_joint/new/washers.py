@@ -36,7 +36,7 @@ class BoltWashers:
         return self.count * self.washer.thickness
 
     def describe(self) -> str:
-        """Number, sizes and source of the washers in words."""
+        """Describe number, sizes and source of the washers in words."""
         sizes = f"{self.washer.outer_diameter * 1e3:g} x {self.washer.thickness * 1e3:g} mm"
         return f"{'two washers' if self.count == 2 else 'a washer'} of {sizes} ({self.source})"
 
@@ -54,7 +54,7 @@ def find_washers(options: DrawingOptions, thread: Thread) -> BoltWashers | None:
     washer, count = find_washer(thread), 1 if options["tapped"] else 2
     if text.replace(" ", "").upper() == STANDARD_WASHERS.replace(" ", ""):
         return BoltWashers(washer, count, STANDARD_WASHERS)
-    outer, thickness = parse_values("washers", text, separator="x", count=2)
+    outer, thickness = parse_values("washers", text, separator="x", value_count=2)
     stated = replace(washer, outer_diameter=outer, thickness=thickness)
     return BoltWashers(stated, count, f"stated on the drawing, hole of {STANDARD_WASHERS}")
 

@@ -20,7 +20,7 @@ from ....exchange.modelica.records import (
 def _make_records(
     parameter_file: ParameterFile, working_points: Sequence[WorkingPoint]
 ) -> list[ModelicaRecord]:
-    """Modelica records of a parameter file; the gear contact has one."""
+    """Make the Modelica records of a parameter file; the gear contact has one."""
     contact = GearContactSpring.tabulate(parameter_file.values)
     pressure = decimate_curve(contact.curve)
     approach = pressure.rows[:, :1] - contact.curve.displacement[0]

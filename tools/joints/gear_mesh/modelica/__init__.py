@@ -22,7 +22,7 @@ from ....exchange.modelica.records import (
 def _make_records(
     parameter_file: ParameterFile, working_points: Sequence[WorkingPoint]
 ) -> list[ModelicaRecord]:
-    """Modelica records of a parameter file; the gear mesh has one."""
+    """Make the Modelica records of a parameter file; the gear mesh has one."""
     spring = GearMeshSpring.tabulate(parameter_file.values)
     table = decimate_curve(spring.curve)
     energy = make_curve_of_table(table).energy(table.rows[:, 0])

@@ -77,7 +77,7 @@ def make_sourced_numbers(
     ratio: float | None = None,
     source: str = "catalogue",
 ) -> dict[str, SourcedNumber]:
-    """Numbers of a catalogue row with their source: {parameter: number}.
+    """Make the numbers of a catalogue row with their source: {parameter: number}.
 
     rated_torque_origin : origin of the rated torque: "catalogue" if it is published, else that of the
                           estimate T2
@@ -115,7 +115,7 @@ def fit_contact_pair_law(
     rated = sourced_numbers["rated_torque"]
     origin = sourced_numbers["T1"].source
     file = drive.resize_drive(
-        file, catalogue_row.rated, TABLE_END_OVER_RATED_TORQUE, rated.kind, rated.source
+        file, catalogue_row.rated, TABLE_END_OVER_RATED_TORQUE, rated.origin, rated.source
     )
     if "ratio" in sourced_numbers:
         file = file.with_values({"ratio": sourced_numbers["ratio"].value}, "catalogue", origin)

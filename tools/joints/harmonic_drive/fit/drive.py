@@ -120,7 +120,7 @@ def change_law(
         k: p.value for k, p in sourced_numbers.items()
     }
     kinds = {k: v for k, v in start_file.origins.items() if k in shared} | {
-        k: p.kind for k, p in sourced_numbers.items()
+        k: p.origin for k, p in sourced_numbers.items()
     }
     sources = {k: v for k, v in start_file.sources.items() if k in shared}
     sources |= {k: p.source for k, p in sourced_numbers.items()}
@@ -239,8 +239,8 @@ def angle_picture(
     """
     grid, target = np.linspace(0.0, torque[-1], _CURVE_POINTS), catalogue_row.wind_up(torque)
     return FitPlot(
-        data_x=torque,
-        data_y=target / RAD_PER_ARCMIN,
+        measured_x=torque,
+        measured_y=target / RAD_PER_ARCMIN,
         misfit=100.0 * (target / wind_up(fitted_drive, torque) - 1.0),
         law_curve=(grid, wind_up(fitted_drive, grid) / RAD_PER_ARCMIN),
         axis_labels=("torque [N.m]", "wind-up [arcmin]", "catalogue / law - 1 [%]"),
@@ -267,8 +267,8 @@ def stiffness_picture(
     torque = grid[1::2][~np.isin(grid[1::2], (catalogue_row.T1, catalogue_row.T2))]
     steps = catalogue_row.stiffness(torque)
     return FitPlot(
-        data_x=torque,
-        data_y=steps / 1e3,
+        measured_x=torque,
+        measured_y=steps / 1e3,
         misfit=100.0 * (steps / stiffness(fitted_drive, torque) - 1.0),
         law_curve=(grid, stiffness(fitted_drive, grid) / 1e3),
         axis_labels=("torque [N.m]", "stiffness [kN.m/rad]", "catalogue / law - 1 [%]"),

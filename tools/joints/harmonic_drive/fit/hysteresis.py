@@ -86,7 +86,7 @@ def fit(
     fitted_names: Sequence[str] | None = None,
     inertia: float | None = None,
 ) -> FitResult:
-    """Fit a file of loops, decays, responses, or frequency and damping over the amplitude (COLUMN_NAMES).
+    """Fit a drive to a file of loops, decays, responses, or frequency and damping over the amplitude.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def fit(
     file, rest = _set_start_hysteresis(start_file, names)
 
     def make_law_with_values(parameter_values: Mapping[str, float]) -> HysteresisLaw:
-        """Hysteresis law of the drive for values of the fitted parameters."""
+        """Make the hysteresis law of the drive for values of the fitted parameters."""
         return make_law(file.with_values(parameter_values, "calibration", "fit").values)
 
     model = hysteresis_fit.build_model(data, make_law_with_values, "inertia", inertia, 0.0)
@@ -134,7 +134,7 @@ def fit(
 def _set_start_hysteresis(
     parameter_file: ParameterFile, fitted_names: Sequence[str]
 ) -> tuple[ParameterFile, float]:
-    """Start parameters with non-zero hysteresis, and K_WTS [N.m/rad] at zero torque.
+    """Set non-zero hysteresis in the start parameters; also returns K_WTS [N.m/rad] at zero torque.
 
     The fit needs non-zero values, because its unknowns are logarithms.
     """
@@ -165,10 +165,10 @@ IGNORED_FIRST_SAMPLES = 10
 """Number of first samples that are ignored, because the history of the hysteresis is unknown there."""
 
 
-def measured_wind_up(samples: Samples, ratio: float) -> Array:
+def measured_wind_up(samples: Samples, speed_ratio: float) -> Array:
     """Wind-up (n) [rad] between joint and motor, minus its mean. The motor angle may have either sign."""
     sense = np.sign(np.dot(samples.q - samples.q.mean(), samples.motor_angle - samples.motor_angle.mean()))
-    angle = samples.q - sense * samples.motor_angle / abs(ratio)
+    angle = samples.q - sense * samples.motor_angle / abs(speed_ratio)
     return np.asarray(angle - angle.mean())
 
 
@@ -315,7 +315,7 @@ def _hysteresis_torque(spring: HarmonicDriveSpring, wind_up_path: Array) -> Arra
 
 
 def _insert_turning_points(wind_up_path: Array) -> tuple[Array, NDArray[np.int_]]:
-    """Path (n) with its turning points inserted, and indices (n) of the samples in the longer path.
+    """Insert its turning points into a path (n); also returns the indices (n) of the samples in the new path.
 
     A turning point between samples is the vertex of a parabola.
     """

@@ -324,7 +324,7 @@ def _check_rotor_inertia(rotor_inertia: float, fitted_log: FittedLogFriction) ->
 def _fit_rotor_inertia(
     parameter_file: ParameterFile, log_samples: Samples, fitted_log: FittedLogFriction
 ) -> tuple[float, float] | None:
-    """Rotor inertia and its standard deviation [kg.m2]; None if the log does not determine them."""
+    """Fit the rotor inertia and its standard deviation [kg.m2]; None if the log does not determine them."""
     if parameter_file.law != "catalogue":
         return None
     square = fitted_log.drive.ratio**2
@@ -343,9 +343,9 @@ def _fit_stiffness(
 ) -> tuple[tuple[Solution, FitPlot] | None, list[str]]:
     """Fit stiffness and hysteresis to a log with the motor angle.
 
-    fitted_log : gives the load of a log without a torque sensor
+    fitted_log : fitted friction, from which the load follows if the log has no torque sensor
 
-    Returns solution and picture, or None if there is no such fit; and notes.
+    Returns (solution, picture), or None if the log cannot be fitted; and notes.
     """
     if fitted_names and not any(name in hysteresis.ROBOT_LOG_FITTED_PARAMETERS for name in fitted_names):
         return None, []
@@ -390,9 +390,9 @@ def _start_parameters(
     start_parameters: ParameterFile | None,
     drive_name: str | None,
     rated_torque: float | None,
-    ratio: float | None,
+    speed_ratio: float | None,
 ) -> ParameterFile:
-    """Start parameters of a fit: of the drive that the user states in one of several ways.
+    """Start parameters of a fit: of a file, a catalogue drive, or a drive with a rated torque and ratio.
 
     Raises ValueError unless the drive is stated in exactly one way, and InputRefusal if its ratio is missing.
     """
@@ -415,28 +415,28 @@ def _start_parameters(
     if start_parameters is not None:
         file = start_parameters
     elif drive_name is not None:
-        file = _catalogue_drive(drive_name, ratio)
+        file = _catalogue_drive(drive_name, speed_ratio)
     else:
         assert rated_torque is not None
-        if ratio is None:
+        if speed_ratio is None:
             raise InputRefusal(
                 f"rated torque = {rated_torque:g} N.m does not state the ratio; state both", "ratio"
             )
         default = load_default("harmonic_drive")
         max_torque_ratio = default.values.max_table_torque / default.values.rated_torque
         file = resize_drive(default, rated_torque, max_torque_ratio, "user", "stated with the log")
-    return file if ratio is None else file.with_values({"ratio": ratio}, "user", "stated")
+    return file if speed_ratio is None else file.with_values({"ratio": speed_ratio}, "user", "stated")
 
 
-def _catalogue_drive(drive_name: str, ratio: float | None) -> ParameterFile:
+def _catalogue_drive(drive_name: str, speed_ratio: float | None) -> ParameterFile:
     """Parameters of a drive of the catalogue; a stated ratio selects the drive of this ratio.
 
     A stated ratio that is the catalogue's ratio plus 1 means that the flexspline is fixed.
     """
     options = dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.options) | {"catalogue": drive_name}
-    if ratio is not None:
-        is_flexspline_fixed = abs(ratio) == find_drive(drive_name).numbers["ratio"].value + 1.0
-        options |= {"fixed": "flexspline"} if is_flexspline_fixed else {"ratio": f"{abs(ratio):g}"}
+    if speed_ratio is not None:
+        is_flexspline_fixed = abs(speed_ratio) == find_drive(drive_name).numbers["ratio"].value + 1.0
+        options |= {"fixed": "flexspline"} if is_flexspline_fixed else {"ratio": f"{abs(speed_ratio):g}"}
     return NEW_JOINT_COMMAND.make_joint(options).file
 
 
@@ -572,11 +572,11 @@ def _load_picture(samples: Samples) -> FitPlot:
     )
 
 
-def _constant_friction_torque(earlier_samples: Samples, later_samples: Samples, ratio: float) -> Array:
+def _constant_friction_torque(earlier_samples: Samples, later_samples: Samples, speed_ratio: float) -> Array:
     """Motor torque (n) [N.m] of later samples, by a model with constant friction fitted to earlier ones."""
     models = []
     for samples in (earlier_samples, later_samples):
-        terms = LinearTorqueTerms.evaluate_at_samples(samples, ratio)
+        terms = LinearTorqueTerms.evaluate_at_samples(samples, speed_ratio)
         models.append(
             (
                 np.concatenate([np.ones((samples.dq.size, 1)), terms.design_matrix], axis=1),
@@ -602,7 +602,7 @@ _NO_LOAD_LABEL, _TEMPERATURE_LABEL = "friction without load [mN m]", "temperatur
 
 
 def draw_pictures(samples: Samples, fitted_log: FittedLogFriction) -> Iterator[FitPlot]:
-    """Pictures of the friction over speed, time and temperature, as far as the log has these columns."""
+    """Draw the friction over speed, time and temperature, as far as the log has these columns."""
     braked, torque = fitted_log.evaluate_torque(samples)
     misfit = samples.motor_torque - torque
     measured = braked + misfit

@@ -20,14 +20,14 @@ MAX_FITTED_OVER_START_FRICTION = 5.0
 """Factor [1] between fitted friction and friction of the start file, above which the fit is doubtful."""
 GRAVITY_HARMONICS = 3
 """Harmonics of the joint angle in gravity: an arm has one, springs and cables add some."""
-MAX_MOTION_SHARE, MIN_GRAVITY_RESIDUAL = 0.5, 0.02
+MAX_MOTION_OVER_GRAVITY_VARIANCE, MIN_RESIDUAL_OVER_GRAVITY_DEVIATION = 0.5, 0.02
 """Share of the variance of the gravity column, beyond its function of the angle, that acceleration and sense
 of the motion explain [1]; and standard deviation of the gravity column beyond its function of the angle, over
 standard deviation of the column [1]. From both on, the column is no gravity."""
 
 
 def check_repeated_logs(logs: Sequence[MeasuredLog]) -> None:
-    """Raise ValueError if two logs have the same samples: the intervals would be too narrow."""
+    """Raise ValueError if two logs have the same samples, which would make the intervals too narrow."""
     for first, second in combinations(logs, 2):
         if all(
             np.array_equal(getattr(first.samples, name), getattr(second.samples, name), equal_nan=True)
@@ -116,9 +116,9 @@ def doubt_about_gravity(samples: Samples) -> str | None:
         _residual(np.concatenate(terms, axis=1), gravity) for terms in ([of_angle], [of_angle, motion])
     )
     size, left = float(np.linalg.norm(without)), float(np.linalg.norm(remaining))
-    if size <= MIN_GRAVITY_RESIDUAL * float(np.linalg.norm(gravity - gravity.mean())):
+    if size <= MIN_RESIDUAL_OVER_GRAVITY_DEVIATION * float(np.linalg.norm(gravity - gravity.mean())):
         return None
-    if size**2 - left**2 < MAX_MOTION_SHARE * size**2:
+    if size**2 - left**2 < MAX_MOTION_OVER_GRAVITY_VARIANCE * size**2:
         return None
     return (
         "the column gravity depends on acceleration or sense of the motion, as a measured torque does; "

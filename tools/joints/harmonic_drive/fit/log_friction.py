@@ -41,24 +41,24 @@ class LinearTorqueTerms:
     unknown_names: tuple[str, ...]
 
     @classmethod
-    def evaluate_at_samples(cls, samples: Samples, ratio: float) -> "LinearTorqueTerms":
+    def evaluate_at_samples(cls, samples: Samples, speed_ratio: float) -> "LinearTorqueTerms":
         """Evaluate the linear terms of the motor torque at samples of logs, for a speed ratio > 0."""
         columns: dict[str, Array] = {}
         dynamic = samples.is_of_dynamic_log.astype(float)
         measured_load = samples.sensor_torque if samples.has_sensor else samples.gravity_torque
         measured = np.isfinite(measured_load)
         if dynamic.any():
-            columns = {"inertia": samples.ddq / ratio, "offset": dynamic}
+            columns = {"inertia": samples.ddq / speed_ratio, "offset": dynamic}
             swung = dynamic * np.isfinite(samples.q) * ~measured
             if swung.any():
                 angle = np.where(np.isfinite(samples.q), samples.q, 0.0)
                 columns |= {
-                    "gravity_cos": swung * np.cos(angle) / ratio,
-                    "gravity_sin": swung * np.sin(angle) / ratio,
+                    "gravity_cos": swung * np.cos(angle) / speed_ratio,
+                    "gravity_sin": swung * np.sin(angle) / speed_ratio,
                 }
         columns |= {f"ripple_{number}": column for number, column in enumerate(samples.ripple_terms.T.copy())}
         matrix = np.stack([*columns.values()], axis=1) if columns else np.zeros((samples.dq.size, 0))
-        known = np.where(measured, measured_load, 0.0) / ratio
+        known = np.where(measured, measured_load, 0.0) / speed_ratio
         return cls(matrix, known, tuple(columns))
 
     def solve_unknowns(self, torque: Array) -> Array:
@@ -68,7 +68,7 @@ class LinearTorqueTerms:
         )
 
     def tooth_load(
-        self, samples: Samples, linear_unknowns: Array, ratio: float, rotor_inertia: float
+        self, samples: Samples, linear_unknowns: Array, speed_ratio: float, rotor_inertia: float
     ) -> Array:
         """Load (n) [N.m] of the teeth: torque of the drive on the arm, positive in the direction of q.
 
@@ -77,29 +77,31 @@ class LinearTorqueTerms:
         if samples.has_sensor:
             return samples.sensor_torque
         values = dict(zip(self.unknown_names, linear_unknowns.tolist(), strict=True))
-        arm = max(values.get("inertia", 0.0) - rotor_inertia * ratio**2, 0.0)
+        arm = max(values.get("inertia", 0.0) - rotor_inertia * speed_ratio**2, 0.0)
         gravity = [n for n, name in enumerate(self.unknown_names) if name.startswith("gravity")]
-        fitted_gravity = ratio * self.design_matrix[:, gravity] @ linear_unknowns[gravity]
-        return np.asarray(arm * samples.ddq + fitted_gravity + ratio * self.measured_load)
+        fitted_gravity = speed_ratio * self.design_matrix[:, gravity] @ linear_unknowns[gravity]
+        return np.asarray(arm * samples.ddq + fitted_gravity + speed_ratio * self.measured_load)
 
 
-def motor_friction(drive: DriveParameters, joint_speed: Array, temperature: Array, load: Array) -> Array:
+def motor_friction(
+    drive: DriveParameters, joint_speed: Array, temperature: Array, tooth_load: Array
+) -> Array:
     """Friction torque (...) [N.m] at the motor, of a moving drive.
 
     joint_speed : speed (...) [rad/s] of the joint
     temperature : (...) [K] of the lubricant; NaN: reference temperature of the parameters
-    load        : (...) [N.m] of the teeth, at the joint
+    tooth_load  : (...) [N.m] of the teeth, at the joint
     """
     forward = replace(drive, ratio=abs(drive.ratio))
     warmth = np.where(np.isfinite(temperature), temperature, REFERENCE_TEMPERATURE)
     w1 = forward.ratio * joint_speed
-    positive, negative = friction_limits(forward, w1, -load, warmth)
+    positive, negative = friction_limits(forward, w1, -tooth_load, warmth)
     return np.asarray(np.where(w1 > 0.0, positive, -negative) + viscous_torque(forward, w1, warmth))
 
 
-def filtered_motor_friction(drive: DriveParameters, samples: Samples, load: Array) -> Array:
+def filtered_motor_friction(drive: DriveParameters, samples: Samples, tooth_load: Array) -> Array:
     """Friction torque (n) [N.m] at samples, smoothed by the filter of the log."""
-    warmth, carried = samples.temperature[:, None], load[:, None]
+    warmth, carried = samples.temperature[:, None], tooth_load[:, None]
     return np.asarray(
         np.sum(samples.window_weights * motor_friction(drive, samples.window_speeds, warmth, carried), axis=1)
     )
@@ -224,7 +226,7 @@ class FittedLogFriction:
 def select_parameters(
     samples: Samples, drive: DriveParameters, fitted_names: Sequence[str], rotor_inertia: float
 ) -> tuple[list[str], list[str]]:
-    """Select the parameters to fit: those that the samples can determine.
+    """Select the friction parameters to fit: those that the samples can determine.
 
     fitted_names  : names that the user states; empty: select from FITTED_PARAMETERS
     rotor_inertia : [kg.m2]
@@ -328,11 +330,13 @@ def _iterate_load(
     load = terms.tooth_load(samples, linear, ratio, rotor_inertia)
     for _ in range(LOAD_ITERATION_COUNT):
 
-        def net_torque(parameter_values: Mapping[str, float], load: Array = load) -> Array:
+        def net_torque(parameter_values: Mapping[str, float], tooth_load: Array = load) -> Array:
             """Motor torque (n) [N.m] without friction and measured gravity."""
             drive = parameter_file.with_values(parameter_values, "calibration", "fit").values
             return np.asarray(
-                samples.motor_torque - terms.measured_load - filtered_motor_friction(drive, samples, load)
+                samples.motor_torque
+                - terms.measured_load
+                - filtered_motor_friction(drive, samples, tooth_load)
             )
 
         def residuals(parameter_values: Mapping[str, float], net_torque_function=net_torque) -> Array:  # type: ignore[no-untyped-def]

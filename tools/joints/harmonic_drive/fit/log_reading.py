@@ -78,7 +78,7 @@ class Samples:
         return bool(np.all(np.isfinite(self.sensor_torque)))
 
     def select_samples(self, sample_selection: NDArray[np.bool_] | SampleIndices) -> "Samples":
-        """Samples of the logs that a mask or indices select."""
+        """Select samples of the logs by a mask or indices."""
         return Samples(*(getattr(self, field.name)[sample_selection] for field in fields(self)))
 
 
@@ -88,7 +88,7 @@ def join_samples(samples_of_logs: Sequence[Samples]) -> Samples:
 
 
 def make_steady_speed_samples(columns_by_name: Mapping[str, Array], torque: Array) -> Samples:
-    """Samples of a table of steady speeds; every third row is held out."""
+    """Make the samples of a table of steady speeds; every third row is held out."""
     none = np.full(torque.size, np.nan)
     return Samples(
         time=none,
@@ -125,7 +125,7 @@ def filter_values(values: Array, time_step: float, derivative_order: int = 0) ->
 def make_dynamic_samples(
     time: Array, time_step: float, columns_by_name: Mapping[str, Array], drive: DriveParameters
 ) -> Samples:
-    """Filtered samples of a dynamic log, at times (n) [s] with a constant step [s]."""
+    """Make the filtered samples of a dynamic log, at times (n) [s] with a constant step [s]."""
     none = np.full(time.size, np.nan)
 
     def filter_column(column_name: str) -> Array:
@@ -230,7 +230,7 @@ COLUMN_SYNONYMS: Mapping[str, Sequence[str]] = {
     "temperature": ("temp", "motor_temperature", "joint_temperature", "temperatur"),
 }
 """{column: other headings that are accepted}."""
-MIN_ROWS = 6
+MIN_LOG_ROW_COUNT = 6
 """Required number of rows of a log."""
 MAX_MOTOR_SPEED = 2000.0
 """Largest plausible speed of a wave generator [rad/s]: catalogues allow up to 14 000 rev/min."""
@@ -267,11 +267,14 @@ def read_table(path: Path, renamed_columns: Mapping[str, tuple[str, str | None]]
 
     Raises ValueError with a one-line message that begins with the path.
     """
-    return columns.read_columns(path, COLUMN_UNITS, MIN_ROWS, COLUMN_SYNONYMS, renamed_columns)
+    return columns.read_columns(path, COLUMN_UNITS, MIN_LOG_ROW_COUNT, COLUMN_SYNONYMS, renamed_columns)
 
 
 def make_log(
-    table: columns.Columns, torque_constant: float | None, drive: DriveParameters, torque_at: str = "motor"
+    log_columns: columns.Columns,
+    torque_constant: float | None,
+    drive: DriveParameters,
+    torque_at: str = "motor",
 ) -> MeasuredLog:
     """Make the samples of a robot's log from its columns.
 
@@ -281,7 +284,7 @@ def make_log(
 
     Raises ValueError with a one-line message that begins with the path.
     """
-    path, have = table.path, dict(table.columns)
+    path, have = log_columns.path, dict(log_columns.columns)
     if torque_at == "joint" and "tau" in have:
         if "link_torque" in have:
             raise ValueError(
@@ -289,16 +292,16 @@ def make_log(
                 "expected one of them"
             )
         have["link_torque"] = have.pop("tau")
-    torque = _motor_torque(table, have, torque_constant)
+    torque = _motor_torque(log_columns, have, torque_constant)
     has_motor_torque = torque is not None
     if torque is None:
-        torque = _joint_torque(table, have, torque_at) / abs(drive.ratio)
-    if "temperature" in have and table.units["temperature"] != "K":
+        torque = _joint_torque(log_columns, have, torque_at) / abs(drive.ratio)
+    if "temperature" in have and log_columns.units["temperature"] != "K":
         have["temperature"] = have["temperature"] + CELSIUS_ZERO_IN_KELVIN
     if "time" in have:
-        samples = _read_dynamic_log(table, have, torque, drive)
+        samples = _read_dynamic_log(log_columns, have, torque, drive)
     else:
-        table.require_column("dq", COLUMN_UNITS)
+        log_columns.require_column("dq", COLUMN_UNITS)
         samples = make_steady_speed_samples(have, torque)
         _check_speeds(path, samples, drive)
     _check_motor_torque(path, samples, drive, torque_constant)
@@ -351,7 +354,7 @@ def _joint_torque(
 def _read_dynamic_log(
     log_columns: columns.Columns, columns_by_name: Mapping[str, Array], torque: Array, drive: DriveParameters
 ) -> Samples:
-    """Filtered samples of a dynamic log, one per window of the filter."""
+    """Read the filtered samples of a dynamic log, one per window of the filter."""
     if "q" not in columns_by_name and "dq" not in columns_by_name:
         raise ValueError(
             f"{log_columns.path}: has neither q nor dq; expected {columns.format_heading(COLUMN_UNITS)}"

@@ -70,10 +70,10 @@ def find_ripple_terms(samples: Samples, fitted_log: FittedLogFriction) -> tuple[
     return replace(samples, ripple_terms=np.concatenate(columns, axis=1)), tuple(found)
 
 
-def _harmonic_terms(samples: Samples, harmonic: int, ratio: float) -> Array:
+def _harmonic_terms(samples: Samples, harmonic: int, speed_ratio: float) -> Array:
     """Filtered sense of rotation times sine and cosine (n, 2) [1] of a harmonic of the motor angle."""
     angle, sense = harmonic * samples.window_angles, np.sign(samples.window_speeds)
-    node_rotation = harmonic * ratio * np.abs(samples.dq) * FILTER_WINDOW / (FILTER_NODE_COUNT - 1)
+    node_rotation = harmonic * speed_ratio * np.abs(samples.dq) * FILTER_WINDOW / (FILTER_NODE_COUNT - 1)
     is_resolved = ~samples.is_of_dynamic_log | (node_rotation < MAX_NODE_ROTATION)
     columns = [
         np.sum(samples.window_weights * sense * wave, axis=1) * is_resolved
@@ -103,7 +103,7 @@ def fitted_ripples(fitted_log: FittedLogFriction, harmonics: Sequence[int]) -> l
 def add_ripples(
     parameter_file: ParameterFile, ripples: Sequence[Ripple], source: str, confidence_level: float
 ) -> tuple[ParameterFile, FitFacts, list[str]]:
-    """Parameter file with the ripples, facts about them, and notes.
+    """Add the friction ripples to a parameter file; returns the file, facts about the ripples, and notes.
 
     source           : source of the parameters, without their intervals
     confidence_level : confidence level of the intervals [1]

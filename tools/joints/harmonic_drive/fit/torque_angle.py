@@ -54,7 +54,7 @@ def fit(
     rated_torque: float | None = None,
     law: str | None = None,
 ) -> FitResult:
-    """Fit a file with the columns torque and angle (COLUMN_UNITS), in the order of measurement.
+    """Fit a drive to a measured file with the columns torque and angle (COLUMN_UNITS), in measured order.
 
     An offset of the angle is a further unknown, which is fitted and subtracted.
 
@@ -149,8 +149,8 @@ def make_result(
     residuals = line.angle - drive.wind_up(fitted_file.values, line.torque) - angle_offset
     grid = np.linspace(line.torque[0], line.torque[-1], 400)
     picture = FitPlot(
-        data_x=line.torque,
-        data_y=(line.angle - angle_offset) / RAD_PER_ARCMIN,
+        measured_x=line.torque,
+        measured_y=(line.angle - angle_offset) / RAD_PER_ARCMIN,
         misfit=residuals / RAD_PER_ARCMIN,
         law_curve=(grid, drive.wind_up(fitted_file.values, grid) / RAD_PER_ARCMIN),
         axis_labels=("torque [N.m]", "wind-up [arcmin]", "data - law [arcmin]"),

@@ -40,7 +40,7 @@ _COMPONENT_PARAMETERS = tuple(
 def _make_records(
     parameter_file: ParameterFile, working_points: Sequence[WorkingPoint]
 ) -> list[ModelicaRecord]:
-    """Modelica records of a parameter file; a drive has one."""
+    """Make the Modelica records of a parameter file; a drive has one."""
     drive = parameter_file.values
     spring = HarmonicDriveSpring.tabulate(drive)
     stated = format_parameter_values({name: getattr(drive, name) for name in _COMPONENT_PARAMETERS})
