@@ -97,8 +97,8 @@ def mesh_symmetric_plan(assembly: Assembly, refinement: float, graded_heads: boo
     return PlanMesh(points, cells, np.hypot(*offset).min(axis=0) < radii[0])
 
 
-def first_size_at_heads(assembly: Assembly, refinement: float) -> float:
-    """Size [m] of the elements at the edges of the bolt heads, if the mesh is graded towards them."""
+def min_size_at_heads(assembly: Assembly, refinement: float) -> float:
+    """Size [m] of the smallest elements: those next to the edges of the bolt heads in a graded mesh."""
     ring_width = 0.5 * (assembly.bolts.head_diameter - assembly.bolts.hole_diameter)
     return FIRST_SIZE_AT_HEADS * ring_width / refinement
 
@@ -109,7 +109,7 @@ def _ring_radii(assembly: Assembly, refinement: float, graded_heads: bool) -> Ar
     clearance = _clearance(assembly, head)
     if not graded_heads:
         return np.array([hole, head])
-    first = first_size_at_heads(assembly, refinement)
+    first = min_size_at_heads(assembly, refinement)
     half = graded_levels(0.5 * (head - hole), first, SUCCESSIVE_RING_WIDTH_RATIO)
     inside = np.concatenate([hole + half, head - half[-2::-1]])
     width = min(

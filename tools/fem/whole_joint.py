@@ -22,7 +22,7 @@ from .elasticity import ElasticBody, IndexArray
 from .geometry import Assembly
 from .mesh import contact_mesh, find_contact_cells
 from .symmetric_factorisation import SymmetricFactorisation, find_reflections
-from .symmetric_plan import first_size_at_heads, mesh_symmetric_plan
+from .symmetric_plan import mesh_symmetric_plan, min_size_at_heads
 
 COORDINATE_AXES = (0, 1, 2)
 """Indices of the axes x, y, z."""
@@ -95,7 +95,7 @@ class JointFiniteElements:
         """
         graded_heads = attachment == "heads"
         plan = mesh_symmetric_plan(assembly, refinement, graded_heads)
-        first_height = first_size_at_heads(assembly, refinement) if graded_heads else None
+        first_height = min_size_at_heads(assembly, refinement) if graded_heads else None
         first, second = (make_elastic_body(plan, assembly, side, refinement, first_height) for side in (1, 2))
         attachments, heads = [], []
         for side, body in enumerate((first, second), start=1):

@@ -90,7 +90,11 @@ class Curve:
 
     @property
     def closing_end_load(self) -> float:
-        """Load at zero displacement. Below it the table closes the contact smoothly, from load 0 on."""
+        """Load at zero displacement.
+
+        The law of rough contact begins there, with a load above 0. At negative displacement, the table has
+        a smooth transition from load 0 to this load.
+        """
         return float(self.load[np.searchsorted(self.displacement, 0.0)])
 
     @property
@@ -322,8 +326,9 @@ def _tabulate_between_log_areas(
     end_log_area: float,
     steps_per_log_area: int,
 ) -> Curve:
-    """Table of pressure over approach: the closing of the contact, then the law between two log-areas.
+    """Table of pressure over approach: first contact, then the law between two areas of the largest spot.
 
+    start_log_area, end_log_area : natural logarithm of the areas [m2] of the largest spot
     steps_per_log_area : number of steps per unit of log-area
     """
     ends = [

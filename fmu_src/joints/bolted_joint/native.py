@@ -131,8 +131,8 @@ def _add_cycle_functions(function_graph: FunctionGraph) -> None:
     )
 
 
-def _make_definitions(function_graph: FunctionGraph, model: Model) -> CDefinitions:
-    """Make the constants that the C code of the bolted joint has in common with Python."""
+def _make_c_constants(function_graph: FunctionGraph, model: Model) -> CDefinitions:
+    """Make the C constants that the C code of the bolted joint has in common with Python."""
     counts = {f"SUM_{name.upper()}": k for k, name in enumerate(outputs.CONTACT_SUM_NAMES)} | {
         "N_SUMS": len(outputs.CONTACT_SUM_NAMES)
     }
@@ -188,6 +188,6 @@ def _make_definitions(function_graph: FunctionGraph, model: Model) -> CDefinitio
 
 
 NATIVE_PART = NativeDefinition(
-    _add_functions, (*APPROACH_FILES, *SLIDER_FILES), _make_definitions, friction.history_layout(MAX_PATCHES)
+    _add_functions, (*APPROACH_FILES, *SLIDER_FILES), _make_c_constants, friction.history_layout(MAX_PATCHES)
 )
 """Definition of the C code of the bolted joint."""

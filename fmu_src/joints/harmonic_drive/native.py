@@ -127,7 +127,7 @@ INTEGER_CONSTANT_NAMES: ModuleConstants = {
 """Python constants of the drive with the same names in C: integers (REAL_CONSTANT_NAMES: real numbers)."""
 
 
-def _make_definitions(function_graph: FunctionGraph, model: Model) -> CDefinitions:
+def _make_c_constants(function_graph: FunctionGraph, model: Model) -> CDefinitions:
     """Constants that the C code of the harmonic drive has in common with Python."""
     counts = {"ARGUMENT_IS_LOAD": int(_is_torque_input(model)), "DRIVE_STEPS": spring.MIN_TABLE_STEPS}
     counts["N_HARMONICS"] = len(KINEMATIC_ERROR_HARMONICS) + len(FRICTION_HARMONICS)
@@ -144,6 +144,6 @@ def _make_definitions(function_graph: FunctionGraph, model: Model) -> CDefinitio
 
 
 NATIVE_PART = NativeDefinition(
-    _add_functions, (*CURVE_FILES, *SLIDER_FILES), _make_definitions, spring.HISTORY_LAYOUT
+    _add_functions, (*CURVE_FILES, *SLIDER_FILES), _make_c_constants, spring.HISTORY_LAYOUT
 )
 """Definition of the C code of the harmonic drive."""

@@ -291,7 +291,11 @@ class SumFunctions:
     def function_values(
         self, normalised_pressure: PressureDistribution, load_case_sums: LoadCaseSums
     ) -> Array:
-        """Contributions (c, 9 m) of c nodes to the 9 sums in m load cases, over the scale of each sum."""
+        """Contributions (c, 9 m) of c contact nodes to the sums of the joint in m load cases.
+
+        The 9 sums of a load case are force, stiffness and their moments, see `SumFunctions`. Each
+        contribution is divided by the scale of its sum.
+        """
         return self.selected_function_values(
             normalised_pressure, load_case_sums, np.arange(load_case_sums.sum_scales.size)
         )

@@ -105,7 +105,10 @@ def identify(
 
 
 def make_two_sided_series(one_sided_series: ScaleSeries) -> ScaleSeries:
-    """Series of the equivalent surface of two sides with the same finish, from the series of one side."""
+    """Structure function or spectrum of the gap between two sides with the same finish.
+
+    one_sided_series : structure function or spectrum of one side; both sides add
+    """
     return replace(
         one_sided_series,
         value=2.0 * one_sided_series.value,

@@ -56,7 +56,11 @@ def _sum_spots(spot_quantity: SpotFunction, spot_density: SpotFunction, edges: S
 def _stick_sum(
     spot_quantity: SpotFunction, x: SpotFunction, spot_density: SpotFunction, low: float, high: float
 ) -> float:
-    """Sum of spot_quantity(a) (1 - x(a))^(1/3) for spots with x < 1; x decreases with the area."""
+    """Sum of spot_quantity(a) (1 - x(a))^(1/3) over the spots that do not slip.
+
+    x : function of the area a [m2]: tangential force over friction limit [1] of a spot, decreasing with a;
+        spots with x >= 1 slip
+    """
     if high <= low or x(high) >= 1.0:
         return 0.0
     onset = low if x(low) <= 1.0 else exp(brentq(lambda t: x(exp(t)) - 1.0, log(low), log(high), xtol=1e-14))
@@ -316,7 +320,7 @@ def _evaluate_yu2022(p: Parameters, largest: float) -> dict[str, float]:
     }
 
 
-def _evaluate_roughness(parameters: Parameters, pressure: float) -> dict[str, float]:
+def _evaluate_roughness_law(parameters: Parameters, pressure: float) -> dict[str, float]:
     """Quantities of the law `roughness` at a nominal pressure [Pa]."""
     E, shear = _bodies(parameters)
     h, gamma, wave, hurst, A_0, H = (
@@ -526,8 +530,8 @@ _CASES: Sequence[_Case] = (
         _YU | {"rigid_flat": False, "plastic_area": "kogut_etsion", "e": 0.5},
         (1e-10, 1e-7),
     ),
-    ("roughness", _evaluate_roughness, _ROUGHNESS, (1e4, 1e6, 1e8)),
-    ("roughness", _evaluate_roughness, _ROUGHNESS | {"slope": 0.02}, (1e6, 1e8)),
+    ("roughness", _evaluate_roughness_law, _ROUGHNESS, (1e4, 1e6, 1e8)),
+    ("roughness", _evaluate_roughness_law, _ROUGHNESS | {"slope": 0.02}, (1e6, 1e8)),
     ("table", _evaluate_interface_table, _INTERFACE_TABLE, (1e4, 3e5, 8e5, 2e6, 1e7, 5e7)),
     ("catalogue", _evaluate_catalogue_drive, _CATALOGUE, (2e-4, 4.2e-4, 9e-4, 1.2e-3, 2e-3)),
     ("table", _evaluate_measured_drive, _TABLE, (2.2e-4, 3e-4, 9e-4, 1.2e-3, 1.5e-3)),

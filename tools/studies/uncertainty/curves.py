@@ -82,8 +82,8 @@ class LoadCurves:
         }
 
 
-def load_curves(joint_kind: JointKind) -> LoadCurves:
-    """Load the quantities along a ramp of a kind of joint, from its module `uncertainty`.
+def find_load_curves(joint_kind: JointKind) -> LoadCurves:
+    """Find the quantities that a kind of joint has along a load ramp, in its module `uncertainty`.
 
     Raises ValueError if the joint has none.
     """

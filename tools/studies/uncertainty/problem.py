@@ -13,7 +13,7 @@ from jointfmu.parameters import ParameterFile, format_parameter_file
 from jointfmu.quantity import Array, Interval, find_problem, flatten_fields
 from jointfmu.quantity.refusal import InputRefusal
 
-from .curves import LoadCurves, load_curves
+from .curves import LoadCurves, find_load_curves
 from .journal import sha256_text
 from .study import UncertainParameter, draw_samples, is_relative, split_settings
 from .worker import LOAD_INTERVAL_MEANING, JointRamp, RampEvaluator
@@ -88,7 +88,7 @@ def state_problem(
     cannot be uncertain.
     """
     curves, declared = (
-        load_curves(KINDS[parameter_file.joint]),
+        find_load_curves(KINDS[parameter_file.joint]),
         dict(flatten_fields(type(parameter_file.values))),
     )
     base = dict(parameter_file.values_by_name)

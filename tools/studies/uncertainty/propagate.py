@@ -80,6 +80,8 @@ def compute_bands(
 ) -> Bands:
     """Bands (distribution along the ramp) of all outputs, from points (n, d) of the unit cube.
 
+    execution : where and in how many processes the runs are done, and where their results are stored
+
     Raises RuntimeError if the law refuses all samples; ValueError, RuntimeError as `evaluate_runs`.
     """
     first = uncertainty_problem.evaluator.run(-1, uncertainty_problem.settings)

@@ -21,7 +21,7 @@ from jointfmu.quantity import Array, Interval, assemble_parameter_set
 from ...run.engine import VariableJoint
 from ...run.host import is_needed_to_run
 from ...run.ramps import ramp
-from .curves import LoadCurves, load_curves, spline_weights
+from .curves import LoadCurves, find_load_curves, spline_weights
 
 KILLED_RUN_MESSAGE = "the process of the run died"
 """Error message in the journal for a run whose process died."""
@@ -192,7 +192,7 @@ class JointRamp:
     @property
     def curves(self) -> LoadCurves:
         """Quantities of the joint along the load ramp."""
-        return load_curves(KINDS[self.file.joint])
+        return find_load_curves(KINDS[self.file.joint])
 
     def include_files(self) -> "JointRamp":
         """Return this evaluator unchanged: it needs no files (the evaluator of an FMU packs the FMU)."""

@@ -202,7 +202,11 @@ def unit_displacements(patches: FrictionPatches) -> list[Array]:
 
 
 def directional_stiffness(tangent: Array, direction: Array) -> Array:
-    """Tangential stiffness (m) [Pa/m] of patches in directions (m, 3), from tangents (m, 6) [Pa/m]."""
+    """Tangential stiffness (m) [Pa/m] of patches along directions of motion.
+
+    tangent   : (m, 6) [Pa/m] components xx, xy, yy, xt, yt, tt, where t is the torsion about the patch centre
+    direction : (m, 3) components x, y and t of the motion
+    """
     (xx, xy, yy, xt, yt, tt), (u, v, w) = tangent.T, direction.T
     return np.asarray(xx * u**2 + yy * v**2 + tt * w**2 + 2.0 * (xy * u * v + xt * u * w + yt * v * w))
 

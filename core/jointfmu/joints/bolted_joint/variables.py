@@ -82,7 +82,10 @@ def _max_row_moment(joint: Any, inputs: VariableValues) -> Number:
 
 
 def _make_model_variant(model: Model, joint: AnyBoltedJoint) -> Model:
-    """Model for a parameter set: outputs of bolt forces, load cycle with a preload above the embedding."""
+    """Model for a parameter set: it has a force output for each bolt, if the members are elastic.
+
+    The preload of its load cycle is at least twice the preload that is lost by embedding.
+    """
     assert model.load_cycle
     loop = replace(
         model.load_cycle, variable_values={"preload": max(_DEFAULT_LOOP_PRELOAD, 2.0 * joint.embedding)}

@@ -67,7 +67,10 @@ class ContactPairDriveParameters(DriveParameters):
     @property
     @abstractmethod
     def pair_law(self) -> Hu2023 | RoughnessLaw:
-        """Interface law of the contact pair; its load is a power of the area of the largest spot."""
+        """Interface law of the contact between flexspline and bearing.
+
+        Its load is a power of the area of the largest spot.
+        """
 
     @property
     @abstractmethod

@@ -191,7 +191,11 @@ class CatalogueDriveParameters(PrescribedDriveParameters):
 
     @property
     def K_FTS(self) -> Number:
-        """Stiffness K_FTS [N.m/rad]: twice the largest of K1, K2 and K3."""
+        """Stiffness K_FTS [N.m/rad] of circular spline and flexspline.
+
+        The catalogue does not state it. It is set to twice the largest of K1, K2 and K3: K_TS then equals
+        K_FTS where the drive is stiffest, and is finite everywhere.
+        """
         return 2.0 * np.maximum(np.maximum(self.K1, self.K2), self.K3)
 
     @property

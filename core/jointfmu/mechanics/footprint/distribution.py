@@ -242,9 +242,12 @@ class NodalField:
             )
 
     def _check_points(self, entry_prefix: str) -> None:
-        """Raise ValueError if lists of the points (prefix "") or patches differ in length or do not balance.
+        """Raise ValueError if the lists of the points or patches differ in length, or a sum is wrong.
 
-        The balance of sums and means is that of the class.
+        The area shares add up to 1, their centroid is the origin, and the means of the pressure shapes are
+        1 (preload) and 0 (moment).
+
+        entry_prefix : prefix of the names of the lists: "" for the points, PATCH_KEY_PREFIX for the patches
         """
         count = len(getattr(self, f"{entry_prefix}share"))
         for name in (*_POINT_ENTRIES, "radius") if entry_prefix and self.patch_radius else _POINT_ENTRIES:

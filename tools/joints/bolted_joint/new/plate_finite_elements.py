@@ -103,14 +103,15 @@ COARSE_REFINEMENT = 0.5
 class ComputedJoint:
     """Complete joint between its attachments, by finite elements.
 
-    compliances    : of the linear finite-element model
-    parameter_file : parameters of the joint with elastic sides
-    mesh_changes   : {K_xx, ..., K_rz, load factor: relative change [1] from a mesh of twice the element size}
+    compliances            : of the linear finite-element model
+    parameter_file         : parameters of the joint with elastic sides
+    changes_between_meshes : relative changes [1] of K_xx, ..., K_rz and the load factor, by name, from a mesh
+        of twice the element size to this mesh
     """
 
     compliances: Compliances
     parameter_file: ParameterFile
-    mesh_changes: dict[str, float]
+    changes_between_meshes: dict[str, float]
 
 
 def compute_joint(
@@ -189,9 +190,9 @@ def _mesh_changes(fine: Compliances, coarse: Compliances) -> dict[str, float]:
     return changes | ({"load factor": 1.0 - coarse.joint_load_factor / factor} if factor else {})
 
 
-def _describe_mesh_changes(mesh_changes: dict[str, float]) -> str:
+def _describe_mesh_changes(changes_between_meshes: dict[str, float]) -> str:
     """Describe the error of the finite elements, estimated by two meshes."""
-    changes = ", ".join(f"{name} {change:+.1%}" for name, change in mesh_changes.items())
+    changes = ", ".join(f"{name} {change:+.1%}" for name, change in changes_between_meshes.items())
     return f"change from a mesh with elements of twice the size, an estimate of the error: {changes}"
 
 
@@ -275,7 +276,7 @@ def compute_joint_or_warning(
         computed = compute_joint(parameter_file, bolted_plates, attachment, normalised_pressure)
     except ValueError as error:
         raise ValueError(f"{error}; or state --sides rigid for the interface alone") from None
-    changes = computed.mesh_changes
+    changes = computed.changes_between_meshes
     mesh_error = max(map(abs, changes.values())), "1", _describe_mesh_changes(changes)
     facts = joint_facts(computed.parameter_file, bolted_plates.preload)
     return NewJoint(computed.parameter_file, facts | {"mesh_error": mesh_error})
