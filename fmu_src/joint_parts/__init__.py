@@ -54,7 +54,7 @@ def make_native_definition_loader(package_name: str) -> "Callable[[], NativeDefi
     """Make a function that imports the module `native` of a joint and returns its `NATIVE_PART`."""
 
     def load_definition() -> "NativeDefinition":
-        """Import the module and return its `NATIVE_PART`."""
+        """Import the joint's module `native` and return the definition of its C code."""
         part: NativeDefinition = import_module(f"{package_name}.native").NATIVE_PART
         return part
 

@@ -242,7 +242,7 @@ def forward_dynamics(
         parent = ground if link.parent == GROUND else spatial[link.parent]
         if link.name in rotors:
             rotor = rotors[link.name]
-            spin = _carrier_spin(link, parent, rotor)
+            spin = _carrier_angular_acceleration(link, parent, rotor)
             if rotor.torque is None:
                 rotor_accelerations[link.name] = rotor.acceleration
                 rotor_torques[link.name] = rotor.inertia * (rotor.acceleration + spin)
@@ -305,7 +305,7 @@ def _add_rotor(
     bias_forces[parent] = _add(bias_forces[parent], [*moment, 0.0, 0.0, 0.0])
 
 
-def _carrier_spin(link: Link, parent_acceleration: Vector, rotor: RotorMotion) -> Number:
+def _carrier_angular_acceleration(link: Link, parent_acceleration: Vector, rotor: RotorMotion) -> Number:
     """Angular acceleration [rad/s2] of the link that carries a rotor, about the axis of the rotor."""
     if not rotor.is_coupled or link.parent == GROUND:
         return 0.0

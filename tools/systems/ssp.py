@@ -331,8 +331,8 @@ def list_values(component: Component) -> dict[str, ParameterValue]:
 def find_fmu_names(system: System) -> dict[str, str]:
     """{component: name of its FMU}.
 
-    The name is that of the model, or SYSTEM_COMPONENT if the system has its own FMU of the joint. Components
-    with equal fixed values share the FMU of the first one.
+    The FMU has the name of its model. An FMU that is built for this system has the name of the system, an
+    underscore and the name of the component. Components with equal fixed values share the FMU of the first.
     """
     names: dict[str, str] = {}
     variants: list[tuple[str, Mapping[str, Any], str]] = []

@@ -38,7 +38,10 @@ def load_joint_file(
 
 
 def _make_catalogue_item(section_name: str, joint: str, catalogue_item_name: str) -> ParameterFile:
-    """Make the catalogue item that a section names, as `jointfmu new` does; ValueError if it is unknown."""
+    """Make the parameter file of the catalogue item that a section of the system file names.
+
+    The file is that of `jointfmu new`. Raises ValueError if the item is unknown.
+    """
     tool_module = load_tool_module(KINDS[joint], "new")
     if tool_module is None or "catalogue" not in {
         option.name for option in tool_module.NEW_JOINT_COMMAND.options

@@ -73,7 +73,7 @@ class RegimeTerm(Protocol):
         """Log-area [1] of the spots at which the regime ends; None: infinity."""
 
     def evaluate_spot(self, log_area: Number) -> Number:
-        """Quantity of a single spot at its log-area t; zero outside the regime."""
+        """Quantity (such as load or stiffness) of one spot of log-area t; 0 outside the regime."""
 
     def integrate_over_spots(self, size_exponent: Number, largest_log_area: Number) -> Number:
         """Integral of the quantity of a spot times exp(-m t) over the regime, for log-areas t <= u.

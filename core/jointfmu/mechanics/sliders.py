@@ -116,9 +116,10 @@ def torsion_directions(slider_count: int) -> Array:
     The directions are unit vectors along the tangents of the circle on which the sliders lie.
 
     A rotation theta [rad] of a patch with the circle radius r [m] displaces a slider by r theta times this
-    vector. Two sliders represent the springs between two adjacent heights (a range of springs). They are on
-    opposite sides of the circle: while both stick, a rotation causes no force, and a translation no torque.
-    The angle between the sliders of adjacent ranges is GOLDEN_RATIO_CONJUGATE times 180 degrees.
+    vector. Two sliders represent one range of springs: those that touch between two adjacent approaches of
+    the surfaces. They are on opposite sides of the circle: while both stick, a rotation causes no force, and
+    a translation no torque. The angle between the sliders of adjacent ranges is GOLDEN_RATIO_CONJUGATE times
+    180 degrees, which spreads the sliders of all ranges evenly.
     """
     angle = np.pi * (GOLDEN_RATIO_CONJUGATE * np.arange(slider_count // 2) % 1.0)
     unit = round_to_digits(np.stack([-np.sin(angle), np.cos(angle)]))

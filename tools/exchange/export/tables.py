@@ -79,7 +79,7 @@ def fit_row_limit(
     found: dict[int, LoadTable] = {}
 
     def is_short_enough(i: int) -> bool:
-        """Whether the table with error number i has at most `max_rows` rows."""
+        """Whether the table with the largest allowed error `errors[i]` has at most `max_rows` rows."""
         found[i] = tabulate(errors[i])
         return len(found[i].rows) <= max_rows
 

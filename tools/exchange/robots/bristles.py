@@ -36,7 +36,10 @@ def lugre_parameters(
 
 
 def presliding_angle(drive: Transmission, motor_inertia: float, step: float) -> float:
-    """Motor angle [rad] at which friction reaches 1 - 1/e of its limit; at least the value of the drive."""
+    """Motor angle [rad] at which friction reaches 1 - 1/e of its limit.
+
+    It is not smaller than `presliding` of the drive: a stable step limits the stiffness of the bristles.
+    """
     return drive.static_friction / lugre_parameters(drive, motor_inertia, step)[0]
 
 

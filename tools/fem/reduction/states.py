@@ -39,10 +39,13 @@ EQUILIBRIUM_ITERATIONS = 3
 def compute_states(
     linear_joint: LinearJoint, reduced_joint: BoltedJointSpring, normal_stiffness: Array, preload: float
 ) -> tuple[Array, Array]:
-    """Compute the states of a joint under motions of side 2, which start from the preloaded joint.
+    """Compute deformation states of a joint, from which the modes of its bodies are chosen.
 
-    Returns the motions (s, 6) [m, rad] of side 2 in s states, and the deformation (n, s) [m] of the bodies
-    with its sign reversed.
+    Each state is the equilibrium of the preloaded joint after one motion of side 2 (a translation, a rotation
+    or a combination, up to slip or opening).
+
+    Returns the motions (s, 6) [m, rad] of side 2 in s states, and the displacements (n, s) [m] of the
+    degrees of freedom of the bodies, relative to the preloaded joint, with reversed sign.
 
     linear_joint     : linear finite-element model of the joint
     reduced_joint    : the reduced joint

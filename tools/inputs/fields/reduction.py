@@ -339,9 +339,9 @@ class _SumSystem:
         )
 
     def find_points(self) -> PressureDistribution | None:
-        """Find the fewest nodes that keep the sums; None if no nodes do.
+        """Find the fewest nodes and area shares that reproduce the sums of all load cases; None if none do.
 
-        The nodes with the highest pressure (`find_peak_nodes`) are always kept, with their own share.
+        The nodes with the highest pressure (`find_peak_nodes`) always stay, with the share of their own area.
         """
         independent, turn = self._independent_sums()
         fixed = find_peak_nodes(self.rounded_distribution)

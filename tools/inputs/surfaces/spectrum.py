@@ -138,7 +138,10 @@ def structure_power_law(lags: Array, H: float) -> Array:
 
 
 def _wave_weights(lags: Array, frequency: Array) -> Array:
-    """Weight (lags, frequencies) [1] of a wave of frequency f in V(tau): (1 - cos 2 pi f tau)^2."""
+    """Contribution (lags, frequencies) [1] of a wave of unit power to V(tau): (1 - cos 2 pi f tau)^2.
+
+    V(tau) = 4 S(tau) - S(2 tau) comes from the structure function S at lag tau [m]; f is the frequency [1/m].
+    """
     return np.asarray((1.0 - np.cos(2.0 * np.pi * np.multiply.outer(lags, frequency))) ** 2)
 
 

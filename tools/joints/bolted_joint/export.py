@@ -283,7 +283,7 @@ def _make_springs(
     node_pairs: "NodePairs | None",
     placement: "Placement",
 ) -> "tuple[Springs, str]":
-    """Make the springs between node pairs, in the tightened state that the user states."""
+    """Make springs between node pairs, with the stiffness at the preload and moment that are stated."""
     spring = BoltedJointSpring.for_interface_nodes(joint)
     if tightened_state is None:
         if node_pairs is None:

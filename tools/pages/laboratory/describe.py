@@ -54,7 +54,7 @@ class PageModule:
 
     @property
     def contact_map_source(self) -> Path | None:
-        """Path of the C source for the map of the contact; None if the joint has no module `laboratory`.
+        """Path of the C source that computes the values of the contact picture; None without a `laboratory`.
 
         The file need not exist.
         """

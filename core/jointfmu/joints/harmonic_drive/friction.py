@@ -117,9 +117,10 @@ def viscous_torque(drive: DriveParameters, w1: Number, temperature: Number = REF
 
 
 def sticking_stiffness(drive: DriveParameters) -> Number:
-    """Total spring stiffness [N.m/rad] of the sliders: M/presliding.
+    """Total spring stiffness [N.m/rad] of the friction sliders before slip: M/presliding.
 
-    M is the larger limit at zero speed, rated torque and REFERENCE_TEMPERATURE.
+    M is the larger friction limit of both directions, at zero speed, rated torque and REFERENCE_TEMPERATURE;
+    presliding [rad] is a parameter of the drive.
     """
     return np.maximum(*friction_limits(drive, 0.0, drive.rated_torque)) / drive.presliding
 

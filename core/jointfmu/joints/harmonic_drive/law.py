@@ -163,7 +163,9 @@ class HarmonicDriveParameters(ContactPairDriveParameters):
 
     @property
     def law(self) -> Hu2023:
-        """Corrected law of Hu 2023 for the whole contact pair. The stiffness of the drive does not use it.
+        """Corrected law of Hu 2023 for the whole nominal contact area.
+
+        The stiffness of the drive does not come from it, but from `pair_law`.
 
         Its base radius r_m is half of the scan length: with r_m of the paper no spot would have stiffness.
         """

@@ -57,7 +57,7 @@ def add_command(command_parsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> CommandResult:
-    """Run the command `jointfmu footprint compute`."""
+    """Compute the contact pressure of an assembly by finite elements, print it and write the files."""
     with require_fem_packages("the finite-element analysis"):
         from ....fem import convergence, results
         from ....fem.assembly import read_assembly as read

@@ -183,7 +183,7 @@ class FittedLogFriction:
     def total_inertia(self) -> float:
         """Inertia [kg.m2] of arm and rotor at the joint, or of the rotor if a sensor measures the load.
 
-        The inertia is known for logs with the column time only.
+        Only a log with a column `time` determines it.
         """
         return float(self.linear_unknowns[0])
 
