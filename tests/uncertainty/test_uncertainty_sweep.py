@@ -57,7 +57,7 @@ def local_cluster(worker_count, settings=()):
     how = "spawn" if sys.platform == "win32" else "forkserver"
     with (
         dask.config.set({"distributed.worker.multiprocessing-method": how, **dict(settings)}),
-        LocalCluster(n_workers=worker_count, threads_per_worker=1, dashboard_address=None) as one,
+        LocalCluster(n_workers=worker_count, threads_per_worker=1, dashboard_address=":0") as one,
     ):
         yield one.scheduler_address
 
