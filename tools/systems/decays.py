@@ -68,7 +68,9 @@ class Decay:
 
 
 def simulate_example_decays(fmu_folder: Path) -> dict[str, list[Decay]]:
-    """Simulate decays with slip for all shipped systems of one vibrating joint, {system: decays}.
+    """Simulate free vibrations that decay by slip, for all shipped systems with one vibrating joint.
+
+    Returns the simulated vibrations by the name of the system.
 
     fmu_folder : folder of the FMUs (FMI 2.0)
     """

@@ -82,7 +82,7 @@ class ParameterSheet:
         self.add_parameter(parameter_name, value, "user", "stated on the drawing")
 
     def add_drawing_number(self, parameter_name: str, stated_number: StatedNumber) -> None:
-        """Add a number that the user states on the drawing, with its range if the user states one."""
+        """Add a number that the user states: one value, or a range, of which the middle is the value."""
         text = f"stated on the drawing: {stated_number.low:g} to {stated_number.high:g}, taken as the middle"
         self.add_parameter(
             parameter_name,

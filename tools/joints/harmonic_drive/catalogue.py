@@ -104,7 +104,7 @@ def find_ratio(drive: CatalogueEntry, other_ratio: float) -> CatalogueEntry:
 
 
 def _name_without_ratio(drive: CatalogueEntry) -> str:
-    """Name of a drive in the catalogue without its ratio: series, size, and parts after the ratio."""
+    """Catalogue name of a drive without its speed ratio, for example CSG-25 for CSG-25-100."""
     parts, ratio = drive.name.split("-"), f"{drive.numbers['ratio'].value:g}"
     places = [place for place, part in enumerate(parts) if part == ratio]
     return "-".join(part for place, part in enumerate(parts) if place != (places or [len(parts)])[-1])

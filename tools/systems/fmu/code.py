@@ -70,8 +70,11 @@ def generate_sources(system_model: SystemModel) -> dict[str, str]:
     prefixes, data_names = {}, {}
     for component in system_model.components:
         code = _generate_component_code(component)
-        candidates = (_name_with_index(component.model.name, k) + "_" for k in count())
-        prefix = next(p for p in candidates if code_by_prefix.setdefault(p, code).is_shared_with(code))
+        prefix = next((p for p, known in code_by_prefix.items() if known.is_shared_with(code)), None)
+        if prefix is None:
+            candidates = (_name_with_index(component.model.name, k) + "_" for k in count())
+            prefix = next(p for p in candidates if p not in code_by_prefix)
+            code_by_prefix[prefix] = code
         known_sources = code_by_prefix[prefix].data_sources
         if code.data_sources[0] not in known_sources:
             known_sources += code.data_sources

@@ -121,11 +121,14 @@ class Contact:
 
 
 def force_transfer(contact_points: PressureDistribution, patches: FrictionPatches) -> Array:
-    """Shares (m, n) [1] of the patches in the normal force of each point, with the sum 1 up to rounding.
+    """Distribute the normal force of the contact points to the friction patches near them.
 
-    Under equal bolt forces each patch gets its own normal force, and each point acts on the patches near it:
-    entropic optimal transport of force from points to patches (Sinkhorn's iteration). Its width is the mean
-    square distance of the force from the nearest patch.
+    Returns the share (m, n) [1] of the force of each of n points that each of m patches receives; the shares
+    of a point add up to 1, except for round-off.
+
+    Under equal bolt forces, each patch receives the normal force of its own area. The method is entropic
+    optimal transport from points to patches (Sinkhorn's iteration). Its width is the mean square distance of
+    the force from the nearest patch.
     """
     square = np.sum((patches.position[:, None] - contact_points.position) ** 2, axis=2)
     nearest = np.min(square, axis=0)

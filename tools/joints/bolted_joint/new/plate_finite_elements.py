@@ -191,7 +191,7 @@ def _mesh_changes(fine: Compliances, coarse: Compliances) -> dict[str, float]:
 
 
 def _describe_mesh_changes(changes_between_meshes: dict[str, float]) -> str:
-    """Describe the error of the finite elements, estimated by two meshes."""
+    """Write the relative changes from a coarser mesh as a sentence: they estimate the error of the mesh."""
     changes = ", ".join(f"{name} {change:+.1%}" for name, change in changes_between_meshes.items())
     return f"change from a mesh with elements of twice the size, an estimate of the error: {changes}"
 
