@@ -471,6 +471,13 @@ def test_what_a_urdf_lacks_is_said_with_what_to_do(tmp_path, capsys, old, new, p
     assert line.endswith(f"{advice}\n")
 
 
+def test_joints_of_one_name_in_a_urdf_are_refused(tmp_path, capsys):
+    file = tmp_path / "two.urdf"
+    file.write_text(URDF_TEXT.replace("JOINT", "continuous").replace('"tip"', '"turn"'))
+    line = refused_line(capsys, "robot", file, "--drive", "turn=CSG-14-100", "--out", tmp_path)
+    assert "two.urdf: the joint of link 'tool' has the name of another joint" in line
+
+
 def test_a_missing_robot_file_is_said(tmp_path, capsys):
     line = refused_line(
         capsys, "robot", tmp_path / "away.urdf", "--drive", "turn=CSG-14-100", "--out", tmp_path

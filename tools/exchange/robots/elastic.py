@@ -93,7 +93,18 @@ def read_robot(path: str | Path) -> Any:
         line = ", ".join(filter(None, map(str.strip, str(error).splitlines()))).removeprefix("Error: ")
         advice = next((text for part, text in _READING_ADVICE.items() if part in line), "")
         raise ValueError(f"{path}: cannot be read as {expected}: {line}{advice}") from None
+    _check_joint_names(path, spec)
     return spec
+
+
+def _check_joint_names(path: str | Path, robot_spec: Any) -> None:
+    """Raise ValueError if joints of a URDF have the same name: MuJoCo keeps only one of these names."""
+    unnamed = [joint.parent.name for joint in robot_spec.joints if not joint.name]
+    if unnamed and b"<robot" in Path(path).read_bytes():
+        raise ValueError(
+            f"{path}: the joint of link {unnamed[0]!r} has the name of another joint; "
+            "expected a name of its own"
+        )
 
 
 def make_axes(robot_spec: Any, drives: Mapping[str, Transmission]) -> list[ElasticAxis]:
