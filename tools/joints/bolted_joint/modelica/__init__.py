@@ -197,7 +197,7 @@ def _make_record(
         values=values
         | {
             "heights": format_matrix(tight.slider_pair_boundaries),
-            "sliders": format_matrix(tight.slider_properties),
+            "sliders": format_matrix(_round_columns(tight.slider_properties)),
             "eta_n": format_matrix(tight.damping_table),
             "bolt_forces": "{"
             + ", ".join(format_number(F, COMPUTED_DIGITS) for F in tight.bolt_forces)
@@ -205,6 +205,15 @@ def _make_record(
         },
         error_note="; where the force is below the one at tightening, relative to that",
     )
+
+
+def _round_columns(sliders: Array) -> Array:
+    """Round each column to COMPUTED_DIGITS digits of its largest number.
+
+    Stiffnesses and friction limits of sliders are differences: the last digits of small ones are round-off.
+    """
+    decimals = COMPUTED_DIGITS - 1 - np.floor(np.log10(sliders.max(axis=0))).astype(int)
+    return np.column_stack([np.round(column, n) for column, n in zip(sliders.T, decimals, strict=True)])
 
 
 MODELICA_COMPONENT = ModelicaComponent(
