@@ -12,5 +12,7 @@ except ImportError as error:
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--out", type=Path, default=Path("dist"), metavar="DIR", help="default: dist")
+    parser.add_argument(
+        "--out", type=Path, default=Path("dist"), metavar="DIR", help="folder to write (default: dist)"
+    )
     sys.exit(main(parser.parse_args().out))

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 from jointfmu_tools.run.host import unpack_fmu
-from jointfmu_tools.run.proof.manifest import RelatedFiles
+from jointfmu_tools.run.proof.manifest import RelatedFileReader
 from jointfmu_tools.run.proof.plan import ExperimentPlan
 from jointfmu_tools.run.proof.run import _offered_interfaces, _run_worker, _usable_interfaces
 
@@ -21,7 +21,7 @@ TOLERANCE = 1e-12
 
 def runs(fmu, experiments):
     """Run the experiments: {(experiment, interface): {output: values over time}, or an error message}."""
-    with unpack_fmu(fmu, model_exchange=True) as (folder, description):
+    with unpack_fmu(fmu, accepts_model_exchange=True) as (folder, description):
         plans = [
             ExperimentPlan.plan_experiment(fmu, folder, one, interface, description)
             for one in experiments
@@ -36,9 +36,9 @@ def runs(fmu, experiments):
             answer = next(answers) if plan.experiment_task_fields else {"error": plan.refusal_reason}
             rows = [line for line in answer.get("rows", []) if line is not None]
             outputs = dict(
-                zip(plan.experiment_task_fields.get("outputs", []), np.array(rows).T, strict=False)
+                zip(plan.experiment_task_fields.get("output_names", []), np.array(rows).T, strict=False)
             )
-            found[plan.experiment.name, plan.interface] = answer.get("error") or outputs
+            found[plan.experiment.experiment_name, plan.fmi_interface] = answer.get("error") or outputs
     return found
 
 
@@ -61,7 +61,7 @@ def main(old, new):
     worst = 0.0
     for path in sorted(old.glob("*/*.fmu")):
         other = new / path.relative_to(old)
-        experiments = RelatedFiles(path).read_experiments()
+        experiments = RelatedFileReader(path).read_experiments()
         before = runs(path, experiments)
         after = runs(other, experiments) if other.exists() else {}
         share, what = max(differences(before, after), default=(0.0, ""))

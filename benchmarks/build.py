@@ -13,7 +13,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from harness import fastest, read_options
+from harness import read_options, time_fastest_call
 
 from jointfmu.joints import MODELS
 from jointfmu.parameters import format_parameter_file, load_default
@@ -39,7 +39,7 @@ def build(name: str, k: int, folder: Path) -> float:
     command = ["-m", "jointfmu", "build", name, "--params", str(parameters), "--flavour", "fmi3"]
     command += ["--out", str(folder / "dist")]
     environment = os.environ | caches
-    _, seconds = fastest(
+    _, seconds = time_fastest_call(
         lambda: subprocess.run([sys.executable, *command], check=True, capture_output=True, env=environment),
         repeats=1,
     )

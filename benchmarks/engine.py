@@ -44,19 +44,19 @@ Seconds = tuple[float, float]
 """Elapsed time and processor time [s]."""
 
 
-def measure(action: Callable[[], object]) -> Seconds:
+def measure_seconds(action: Callable[[], object]) -> Seconds:
     """Time that an action takes, including the processes for which it waits."""
     clock, before = perf_counter(), os.times()
     action()
     return perf_counter() - clock, sum(os.times()[:4]) - sum(before[:4])
 
 
-def shortest(action: Callable[[], object]) -> Seconds:
+def shortest_seconds(action: Callable[[], object]) -> Seconds:
     """Shortest time of an action that runs ROUNDS times."""
-    return min(measure(action) for _ in range(ROUNDS))
+    return min(measure_seconds(action) for _ in range(ROUNDS))
 
 
-def run(code: str, *arguments: object) -> None:
+def run_python_code(code: str, *arguments: object) -> None:
     """Run Python code in a process of its own, with Python's own cache of compiled modules."""
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
     subprocess.run(
@@ -84,12 +84,14 @@ def compare_paths(file: Path, folder: Path) -> dict[str, Seconds]:
     preload = joint.file.start_value("preload")
 
     def follow(engine: JointEngine) -> Callable[[], object]:
-        return lambda: engine.follow({"s_rel_x": shear_cycles()})
+        return lambda: engine.evaluate_path({"s_rel_x": shear_cycles()})
 
     return {
-        "library": shortest(follow(open_joint(model, joint.file))),
-        "FMU in fmpy": shortest(lambda: run_path(fmu, "s_rel_x", shear_cycles(), {"preload": preload})),
-        "Python law": measure(follow(PythonJoint(model, joint.file))),
+        "library": shortest_seconds(follow(open_joint(model, joint.file))),
+        "FMU in fmpy": shortest_seconds(
+            lambda: run_path(fmu, "s_rel_x", shear_cycles(), {"preload": preload})
+        ),
+        "Python law": measure_seconds(follow(PythonJoint(model, joint.file))),
     }
 
 
@@ -101,14 +103,18 @@ def format_seconds(seconds: Seconds | None) -> str:
 def main() -> None:
     """Measure and print the times."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
-    parser.add_argument("--library-alone", action="store_true", help="omit the commands with the Python law")
+    parser.add_argument(
+        "--library-alone",
+        action="store_true",
+        help="measure the FMU's library only, not the commands that use the Python law",
+    )
     law_is_measured = not parser.parse_args().library_alone
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         plate, loops, out = folder / "plate.toml", folder / "loops.csv", folder / "out"
         make = ("new", "bolted-joint", *PLATE, "--Ra", "0.8", "--out", plate, "--force")
-        run(NEW_COMMAND, *make)
-        new = measure(lambda: run(NEW_COMMAND, *make))
+        run_python_code(NEW_COMMAND, *make)
+        new = measure_seconds(lambda: run_python_code(NEW_COMMAND, *make))
         write_loops(jointfmu.load(plate), loops)
         print(f"path of {POINTS} points [s]")
         for label, seconds in compare_paths(plate, folder).items():
@@ -122,9 +128,13 @@ def main() -> None:
         print(f"\n{'command [s]':12} {'library':>16} {'Python law':>16} {'ratio':>7} {'target':>7}")
         print(f"{'new':12} {format_seconds(new):>16} {'':16} {'':7} {TARGETS['new']:7.1f}")
         for label, (code, *arguments) in commands.items():
-            run(str(code), *arguments)
-            library = measure(lambda c=code, a=arguments: run(c, *a))
-            law = measure(lambda c=code, a=arguments: run(PYTHON_LAW + c, *a)) if law_is_measured else None
+            run_python_code(str(code), *arguments)
+            library = measure_seconds(lambda c=code, a=arguments: run_python_code(c, *a))
+            law = (
+                measure_seconds(lambda c=code, a=arguments: run_python_code(PYTHON_LAW + c, *a))
+                if law_is_measured
+                else None
+            )
             ratio = f"{law[1] / library[1]:.1f}" if law else ""
             target = f"{TARGETS[label]:.1f}" if label in TARGETS else ""
             row = f"{format_seconds(library):>16} {format_seconds(law):>16}"

@@ -15,7 +15,7 @@ from harness import print_processor_time, read_options
 from jointfmu_tools.fem.assembly import read_assembly
 from jointfmu_tools.fem.bolted_contact import BoltedContact
 from jointfmu_tools.fem.contact import displacement_matrix
-from jointfmu_tools.fem.elasticity import Cholesky
+from jointfmu_tools.fem.elasticity import CholeskyFactor
 from scipy.sparse.linalg import splu
 from skfem import Basis, BilinearForm, ElementHexS2, ElementVector
 from skfem.models.elasticity import lame_parameters, linear_elasticity
@@ -33,7 +33,7 @@ def main() -> None:
     joint = BoltedContact.from_assembly(assembly, refinement)
     body = joint.bodies[0]
     count = body.unknown_count
-    stiffness = print_processor_time(f"stiffness matrix, {count} unknowns", lambda: body.stiffness)
+    stiffness = print_processor_time(f"stiffness matrix, {count} unknowns", lambda: body.stiffness_matrix)
     form = BilinearForm(linear_elasticity(*lame_parameters(body.E, body.nu)))
     basis = Basis(body.mesh, ElementVector(ElementHexS2()), intorder=4)
     reference = print_processor_time("the same by scikit-fem's loop", lambda: form.assemble(basis))
@@ -43,9 +43,9 @@ def main() -> None:
         relative.T @ sp.diags_array(joint.contact_interface.quadrature_area * SPRING_STIFFNESS) @ relative
     )
     matrix = (stiffness + springs + 1e5 * sp.eye_array(count)).tocsc()
-    load = body.uniform_load(body.mesh.boundaries["head1"])
-    factor = print_processor_time("CHOLMOD", lambda: Cholesky(matrix))
-    print_processor_time("  solution", lambda: factor.solve(load))
+    load = body.distribute_unit_force(body.mesh.boundaries["head1"])
+    factor = print_processor_time("CHOLMOD", lambda: CholeskyFactor(matrix))
+    print_processor_time("  solution", lambda: factor.solve_linear_system(load))
     options = {"SymmetricMode": True}
     lu = print_processor_time(
         "SuperLU, minimum degree", lambda: splu(matrix, "MMD_AT_PLUS_A", 0.0, options=options)
@@ -54,7 +54,7 @@ def main() -> None:
     if find_spec("pyamg"):
         import pyamg
 
-        rigid = body.rigid_motions()
+        rigid = body.rigid_body_motions()
         levels = print_processor_time(
             "PyAMG", lambda: pyamg.smoothed_aggregation_solver(matrix.tobsr((3, 3)), B=rigid)
         )

@@ -18,7 +18,7 @@ sys.path[1:1] = [str(ROOT / "tests"), str(ROOT / "tests" / "support")]
 Result = TypeVar("Result")
 
 
-def fastest(
+def time_fastest_call(
     call: Callable[[], Result], repeats: int = 3, clock: Callable[[], float] = perf_counter
 ) -> tuple[Result, float]:
     """Result of a call, and the shortest time [s] of some repetitions."""
@@ -32,12 +32,12 @@ def fastest(
 
 def print_processor_time(name: str, call: Callable[[], Result]) -> Result:
     """Execute a call once, and print the processor time."""
-    result, seconds = fastest(call, 1, process_time)
+    result, seconds = time_fastest_call(call, 1, process_time)
     print(f"{name}: {seconds:.2f} s", flush=True)
     return result
 
 
-def verdict(value: float, limit: float) -> str:
+def judge_target(value: float, limit: float) -> str:
     """Text: whether a value meets its target."""
     return "met" if value <= limit else "MISSED"
 
@@ -47,13 +47,17 @@ def read_options(description: str | None, **options: Mapping[str, object]) -> ar
     parser = argparse.ArgumentParser(
         description=description, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--quick", action="store_true", help="few repetitions: the times mean little")
+    parser.add_argument(
+        "--quick",
+        action="store_true",
+        help="measure with few repetitions: faster, but the times are inaccurate",
+    )
     for name, keywords in options.items():
         parser.add_argument("--" + name.replace("_", "-"), **keywords)  # type: ignore[arg-type]
     return parser.parse_args()
 
 
-def require(available: bool, requirement: str) -> None:
+def require_machine(available: bool, requirement: str) -> None:
     """End the script with one line if the machine lacks a requirement."""
     if not available:
         raise SystemExit(f"this machine is {sys.platform}; required: {requirement}")

@@ -7,7 +7,7 @@ and the ratio of the first to the last.
 """
 
 import numpy as np
-from harness import fastest, read_options
+from harness import read_options, time_fastest_call
 from jointfmu_tools.inputs.laws import LAWS, build_law_parameters
 from scipy.optimize import brentq
 
@@ -39,9 +39,11 @@ def main():
     print(f"{'law':10} {'inversion':>14} {'all quantities':>16} {'brentq':>12} {'ratio':>8}")
     for name in LAWS:
         law = build_law_parameters(name, None, {})
-        fast, seconds = fastest(lambda law=law: solve_largest_spot(law, pressures), repeats)
-        _, seconds_of_all = fastest(lambda law=law: evaluate_at_pressure(law, pressures), min(repeats, 2))
-        slow, seconds_of_roots = fastest(lambda law=law: solve_by_brentq(law, few), min(repeats, 2))
+        fast, seconds = time_fastest_call(lambda law=law: solve_largest_spot(law, pressures), repeats)
+        _, seconds_of_all = time_fastest_call(
+            lambda law=law: evaluate_at_pressure(law, pressures), min(repeats, 2)
+        )
+        slow, seconds_of_roots = time_fastest_call(lambda law=law: solve_by_brentq(law, few), min(repeats, 2))
         np.testing.assert_allclose(fast[:roots], slow, atol=1e-9)
         rates = points / seconds, points / seconds_of_all, roots / seconds_of_roots
         cells = "{:14.3g} {:16.3g} {:12.3g}".format(*rates)

@@ -82,6 +82,10 @@ if __name__ == "__main__":
     main(
         harness.read_options(
             __doc__,
-            pictures={"type": Path, "metavar": "DIR", "help": "write PNG files of every joint there"},
+            pictures={
+                "type": Path,
+                "metavar": "DIR",
+                "help": "folder to write pictures of all joints to (.png)",
+            },
         )
     )

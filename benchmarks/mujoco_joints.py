@@ -25,13 +25,13 @@ from time import perf_counter, process_time
 import fmpy
 import mujoco
 import numpy as np
-from harness import ROOT, fastest, read_options, require, verdict
+from harness import ROOT, judge_target, read_options, require_machine, time_fastest_call
 from jointfmu_fmu_src.building import build_fmus
 from jointfmu_tools.api import drive
 from jointfmu_tools.exchange.mujoco import plugin
 from jointfmu_tools.exchange.robots import elastic, plugin_robot, robot_system
 from jointfmu_tools.joints.harmonic_drive.transmission import make_transmission
-from jointfmu_tools.run.host import Instance
+from jointfmu_tools.run.host import FmuInstance
 from jointfmu_tools.systems.fit.compiled_system import CompiledSystem
 from mujoco import rollout
 
@@ -55,7 +55,7 @@ TARGET = 2e-6
 """Target time per joint and step [s]."""
 
 
-def row_model(parameters: dict[str, float] | None) -> mujoco.MjModel:
+def make_link_row_model(parameters: dict[str, float] | None) -> mujoco.MjModel:
     """MuJoCo model of a row of links on locked motors, with drives between them if `parameters` is given."""
     bodies = "".join(
         f'<body><joint name="motor{i}" type="hinge" armature="1e-4"/><inertial pos="0 0 0" mass="1" '
@@ -83,9 +83,9 @@ def start_motion(made: mujoco.MjModel) -> mujoco.MjData:
     return data
 
 
-def step_times(parameters: dict[str, float], repeats: int) -> tuple[float, float]:
+def measure_step_times(parameters: dict[str, float], repeats: int) -> tuple[float, float]:
     """Times [s] of a step without drives, and of the drives alone; medians of alternating runs."""
-    made = row_model(None), row_model(parameters)
+    made = make_link_row_model(None), make_link_row_model(parameters)
     data = [start_motion(each) for each in made]
     times = np.empty((repeats, 2))
     for row in times:
@@ -97,7 +97,7 @@ def step_times(parameters: dict[str, float], repeats: int) -> tuple[float, float
     return float(np.median(times[:, 0])), float(np.median(times[:, 1] - times[:, 0]))
 
 
-def python_time(fmu: Path, parameters: dict[str, float], folder: Path, steps: int) -> float:
+def measure_python_time(fmu: Path, parameters: dict[str, float], folder: Path, steps: int) -> float:
     """Time [s] per joint and step with the FMU called from a Python callback."""
     description = fmpy.read_model_description(str(fmu))
     refs = {v.name: v.valueReference for v in description.modelVariables}
@@ -105,7 +105,7 @@ def python_time(fmu: Path, parameters: dict[str, float], folder: Path, steps: in
     unpacked = fmpy.extract(str(fmu), str(folder))
     slaves = []
     for i in range(JOINTS):
-        instance = Instance(unpacked, description, f"drive{i}", model_exchange=True)
+        instance = FmuInstance(unpacked, description, f"drive{i}", uses_model_exchange=True)
         instance.instantiate()
         instance.set_values(parameters)
         instance.enter_initialization()
@@ -123,7 +123,7 @@ def python_time(fmu: Path, parameters: dict[str, float], folder: Path, steps: in
         set_inputs(data)
         data.qfrc_passive[:] += [tau for slave in slaves for tau in slave.getFloat64(torques)]
 
-    made = row_model(None)
+    made = make_link_row_model(None)
     data = start_motion(made)
     mujoco.set_mjcb_passive(passive)
     try:
@@ -151,11 +151,11 @@ def print_plugin(quick: bool) -> None:
         mujoco.mj_loadPluginLibrary(str(plugin(fmu, folder)))
         print(f"{'per joint and step':26} {'plugin':>10} {'Python':>10}")
         for label, parameters in CASES.items():
-            bare, added = step_times(parameters, repeats)
+            bare, added = measure_step_times(parameters, repeats)
             taken = added / JOINTS
-            other = python_time(fmu, parameters, folder / label, python_steps)
+            other = measure_python_time(fmu, parameters, folder / label, python_steps)
             times = f"{taken * 1e6:7.3f} us {other * 1e6:7.1f} us"
-            print(f"{label:26} {times}  of {TARGET * 1e6:g} us {verdict(taken, TARGET)}")
+            print(f"{label:26} {times}  of {TARGET * 1e6:g} us {judge_target(taken, TARGET)}")
         print(f"MuJoCo's own step of {2 * JOINTS} joints: {bare * 1e6:.2f} us")
 
 
@@ -170,7 +170,7 @@ STEP = 5e-4
 TARGETS = {"plain": 1.5, "plain, no friction": 1.5, "plugin": 2.5}
 
 
-def arm_models(folder: Path, hysteresis: float | None) -> dict[str, mujoco.MjModel]:
+def make_arm_models(folder: Path, hysteresis: float | None) -> dict[str, mujoco.MjModel]:
     """Arm models: rigid, elastic in plain MJCF, elastic with the plugin."""
     spec = elastic.read_robot(ROBOT)
     spec.option.timestep = STEP
@@ -184,7 +184,7 @@ def arm_models(folder: Path, hysteresis: float | None) -> dict[str, mujoco.MjMod
         mujoco.mj_loadPluginLibrary(str(library))
     rough, smooth = spec.copy(), elastic.add_drives(spec, axes)
     for axis in axes:
-        rough.joint(axis.joint).frictionloss = axis.drive.dry_friction * abs(axis.drive.ratio)
+        rough.joint(axis.joint_name).frictionloss = axis.drive.dry_friction * abs(axis.drive.ratio)
     for actuator in [*smooth.actuators]:
         smooth.delete(actuator)
     plain = elastic.add_drives(spec, axes).compile()
@@ -200,7 +200,7 @@ def arm_models(folder: Path, hysteresis: float | None) -> dict[str, mujoco.MjMod
     }
 
 
-def initial_states(model: mujoco.MjModel, count: int) -> np.ndarray:
+def make_initial_states(model: mujoco.MjModel, count: int) -> np.ndarray:
     """Initial states (count, n): random poses at rest, the motors at the angles of their links."""
     data, kind = mujoco.MjData(model), mujoco.mjtState.mjSTATE_FULLPHYSICS
     poses = np.random.default_rng(1).uniform(-1.0, 1.0, (count, len(SIZES)))
@@ -220,8 +220,8 @@ def print_throughput(hysteresis: float | None, quick: bool) -> None:
     """Print the processor time per environment and step, over the time of the rigid arm."""
     count, rounds = (QUICK_ENVIRONMENTS, 1) if quick else (ENVIRONMENTS, ROUNDS)
     with tempfile.TemporaryDirectory() as folder:
-        made = arm_models(Path(folder), hysteresis)
-    starts = {name: initial_states(model, count) for name, model in made.items()}
+        made = make_arm_models(Path(folder), hysteresis)
+    starts = {name: make_initial_states(model, count) for name, model in made.items()}
     pool = {name: [mujoco.MjData(model) for _ in range(THREADS)] for name, model in made.items()}
     room = {name: np.zeros((count, ROLLOUT_STEPS, own.shape[1])) for name, own in starts.items()}
     times = {name: [] for name in made}
@@ -236,7 +236,7 @@ def print_throughput(hysteresis: float | None, quick: bool) -> None:
     for name, own in least.items():
         ratios = own / least["rigid"], own / least["rigid, friction"]
         most = TARGETS.get(name)
-        target = f", of {most:g} {verdict(ratios[0], most)}" if most else ""
+        target = f", of {most:g} {judge_target(ratios[0], most)}" if most else ""
         print(
             f"{name:18} {1e6 * own / count / ROLLOUT_STEPS:6.2f} us per environment and step, "
             f"{ratios[0]:5.2f} x rigid, {ratios[1]:5.2f} x rigid with friction{target}"
@@ -260,36 +260,39 @@ def print_robot(quick: bool) -> None:
     files = {f"joint{i}": drive(size).file for i, size in enumerate(SIZES, 1)}
     axes = elastic.make_axes(spec, {joint: make_transmission(file) for joint, file in files.items()})
     rigid, plain = spec.compile(), elastic.add_drives(spec, axes).compile()
-    pose, tip = elastic.joint_positions(rigid, {"joint2": "0.7", "joint3": "0.8"}), rigid.body("flange").id
+    pose, tip = elastic.make_robot_pose(rigid, {"joint2": "0.7", "joint3": "0.8"}), rigid.body("flange").id
     arm = robot_system.read_arm(rigid, axes, files, pose, PAYLOAD, tip)
     model = robot_system.make_robot_system(arm, "robot", "robot", PAYLOAD)
     system = CompiledSystem(model)
     time = COMMUNICATION_STEP * np.arange(round(DURATION / COMMUNICATION_STEP) + 1)
     torques = {
-        f"{joint.name}.tau_motor": joint.motor_load
+        f"{joint.joint_name}.tau_motor": joint.motor_load
         + 0.3 * axis.drive.rated_torque / axis.drive.ratio * np.sin(2.0 * np.pi * time)
         for joint, axis in zip(arm.joints, axes, strict=True)
     }
-    values = {f"{axis.joint}.drive.{key}": x for axis in axes for key, x in ROBOT_EFFECTS.items()}
+    values = {f"{axis.joint_name}.drive.{key}": x for axis in axes for key, x in ROBOT_EFFECTS.items()}
     outputs, repeats = ["tip.x", "tip.y", "tip.z"], 1 if quick else 10
     data = mujoco.MjData(plain)
 
     def run(points: int) -> np.ndarray:
         inputs = {name: torque[:points] for name, torque in torques.items()}
-        return system.simulate(values, time[:points], inputs, outputs, model.tolerance)
+        return system.simulate(values, time[:points], inputs, outputs, model.step_tolerance)
 
     def run_mujoco() -> None:
         mujoco.mj_resetData(plain, data)
         mujoco.mj_step(plain, data, round(DURATION / STEP))
 
-    _, start = fastest(lambda: run(1), repeats, process_time)
-    _, taken = fastest(lambda: run(time.size), repeats, process_time)
-    _, other = fastest(run_mujoco, repeats, process_time)
+    _, start = time_fastest_call(lambda: run(1), repeats, process_time)
+    _, taken = time_fastest_call(lambda: run(time.size), repeats, process_time)
+    _, other = time_fastest_call(run_mujoco, repeats, process_time)
     ratio = DURATION / taken
-    print(f"robot, start: {1e3 * start:.2f} ms, of {1e3 * MAX_START_TIME:g} {verdict(start, MAX_START_TIME)}")
+    print(
+        f"robot, start: {1e3 * start:.2f} ms, of {1e3 * MAX_START_TIME:g} "
+        f"{judge_target(start, MAX_START_TIME)}"
+    )
     print(
         f"robot, communication step {1e3 * COMMUNICATION_STEP:g} ms: {ratio:.1f} x real time, "
-        f"of {MIN_REAL_TIME_RATIO:g} {verdict(-ratio, -MIN_REAL_TIME_RATIO)}"
+        f"of {MIN_REAL_TIME_RATIO:g} {judge_target(-ratio, -MIN_REAL_TIME_RATIO)}"
     )
     print(f"plain MuJoCo model, step {1e3 * STEP:g} ms: {DURATION / other:.1f} x real time")
 
@@ -301,11 +304,11 @@ def main() -> None:
         hysteresis={
             "type": float,
             "metavar": "ARCMIN",
-            "help": "throughput: hysteresis of each drive (none)",
+            "help": "throughput: hysteresis of each drive [arcmin] (default: none)",
         },
-        run={"choices": ("plugin", "throughput", "robot"), "required": True},
+        run={"choices": ("plugin", "throughput", "robot"), "required": True, "help": "benchmark to run"},
     )
-    require(sys.platform != "win32", "Linux or macOS")
+    require_machine(sys.platform != "win32", "Linux or macOS")
     if options.run == "plugin":
         print_plugin(options.quick)
     elif options.run == "robot":

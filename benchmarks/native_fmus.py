@@ -31,15 +31,15 @@ from typing import NamedTuple
 
 import fmpy
 import numpy as np
-from harness import ROOT, read_options, require, verdict
+from harness import ROOT, judge_target, read_options, require_machine
 from joint_cases import CASES
 from jointfmu_fmu_src.building import FLAVOUR_BUILDERS, build_fmus
 from jointfmu_fmu_src.native import data
 from jointfmu_fmu_src.native.code import generate
 from jointfmu_fmu_src.native.compiled import compiler
-from jointfmu_fmu_src.native.compiled.binary import fill_library
+from jointfmu_fmu_src.native.compiled.binary import fill_library_placeholders
 from jointfmu_fmu_src.native.compiled.compiled_models import get_compiled_model
-from jointfmu_tools.run.host import Instance
+from jointfmu_tools.run.host import FmuInstance
 
 from jointfmu.joints import MODELS
 from jointfmu.parameters import load_default
@@ -96,7 +96,7 @@ Times = dict[str, float]
 Ranges = Mapping[str, tuple[float, float]]
 
 
-def trajectories(ranges: Ranges) -> dict[str, np.ndarray]:
+def make_input_paths(ranges: Ranges) -> dict[str, np.ndarray]:
     """Input paths {name: (ROWS, n)} within the ranges {input: (lowest, highest)}.
 
     smooth     : oscillations of about 64 steps; preload and moment are constant
@@ -123,7 +123,7 @@ def trajectories(ranges: Ranges) -> dict[str, np.ndarray]:
     }
 
 
-def pass_through(name: str) -> dict[str, str]:
+def generate_pass_through_sources(name: str) -> dict[str, str]:
     """C sources of an FMU whose outputs are its inputs."""
     inputs, outputs = PASS_THROUGH[name]
     paths = [
@@ -139,11 +139,11 @@ def pass_through(name: str) -> dict[str, str]:
     ]
     any_number = '"1", "", "(-inf, inf)"'
     texts = [f'{{"{v}", {any_number}, -INFINITY, INFINITY, 1, 1, 0, 0}}' for v in (*rows, "gain")]
-    own = data.make_data_block(name, f"{{{name}}}", [*(0.0 for _ in rows), 1.0])
+    own = data.make_data_struct(name, f"{{{name}}}", [*(0.0 for _ in rows), 1.0])
     return files | {
         "joint.c": (HOSTS / "passthrough" / "joint.c").read_text(encoding="utf-8"),
-        "data.h": own.make_header(),
-        "data.c": own.make_source(),
+        "data.h": own.make_c_header(),
+        "data.c": own.make_c_source(),
         "model.h": f"enum {{ N_INPUTS = {inputs}, N_OUTPUTS = {outputs}, N_PARAMETERS = 1 }};\n",
         "variables.c": '#include "variables.h"\n\n#include <math.h>\n\n'
         f"const Variable variables[N_VALUES] = {{{', '.join(texts)}}};\n"
@@ -151,39 +151,42 @@ def pass_through(name: str) -> dict[str, str]:
     }
 
 
-class Linked(NamedTuple):
+class LibrariesByFlavour(NamedTuple):
     """Libraries of an FMU by flavour, and its instantiation token."""
 
     libraries: dict[str, bytes]
     token: str
 
 
-def as_built(name: str) -> Linked:
+def build_joint_libraries(name: str) -> LibrariesByFlavour:
     """Libraries of an FMU as users build it: default parameters, or an entry of DRIVES_WITH_LOSSES."""
     own, changes = DRIVES_WITH_LOSSES.get(name, (name, {}))
     file = load_default(MODELS[own].joint).with_values(changes, "user", "benchmark")
     model = MODELS[own].with_parameters(file.joint, file.values)
     given = data.split_parameters(model, file)
-    part, before = get_compiled_model(model, file, given), data.make_placeholder(model, given)
-    after = data.make_fmu_data(model, file, given, part.sources)
-    made = {f: fill_library(part.libraries[f[-1]][PLATFORM], before, after, own) for f in NATIVE}
-    return Linked(made, after.token)
+    part, before = get_compiled_model(model, file, given), data.make_placeholder_data_struct(model, given)
+    after = data.make_fmu_data_struct(model, file, given, part.source_texts)
+    made = {
+        f: fill_library_placeholders(part.libraries_by_fmi_version[f[-1]][PLATFORM], before, after, own)
+        for f in NATIVE
+    }
+    return LibrariesByFlavour(made, after.instantiation_token)
 
 
-def as_compiled(name: str) -> Linked:
+def build_pass_through_libraries(name: str) -> LibrariesByFlavour:
     """Libraries of an FMU of PASS_THROUGH."""
-    files = pass_through(name)
+    files = generate_pass_through_sources(name)
     units = {flavour: compiler.select_source_files(list(files), flavour[-1]) for flavour in NATIVE}
     made = {f: compiler.compile_libraries(name, files, u, [PLATFORM])[PLATFORM] for f, u in units.items()}
-    return Linked(made, generate.read_instantiation_token(files))
+    return LibrariesByFlavour(made, generate.read_instantiation_token(files))
 
 
-def libraries(folder: Path) -> Iterator[tuple[str, str, Path, str, int]]:
+def list_native_libraries(folder: Path) -> Iterator[tuple[str, str, Path, str, int]]:
     """Name, flavour, library, token and number of outputs of every native FMU and pass-through."""
     for name in (*MODELS, *DRIVES_WITH_LOSSES, *PASS_THROUGH):
         model = MODELS.get(DRIVES_WITH_LOSSES.get(name, (name, {}))[0])
         outputs = len(model.outputs) if model else PASS_THROUGH[name][1]
-        linked = as_built(name) if model else as_compiled(name)
+        linked = build_joint_libraries(name) if model else build_pass_through_libraries(name)
         for flavour, library in linked.libraries.items():
             file = folder / flavour / f"{name}.so"
             file.parent.mkdir(exist_ok=True)
@@ -205,11 +208,11 @@ def build_host(folder: Path) -> Path:
     return file
 
 
-def native_times(
+def measure_native_times(
     host: Path, ranges: Ranges, flavour: str, library: Path, token: str, outputs: int, repeats: int = REPEATS
 ) -> Times:
     """Times that the C host measures."""
-    inputs = b"".join(rows.tobytes() for rows in trajectories(ranges).values())
+    inputs = b"".join(rows.tobytes() for rows in make_input_paths(ranges).values())
     counts = (str(len(ranges)), str(outputs), str(repeats))
     done = subprocess.run(
         [host, library, flavour[-1], token, *counts], input=inputs, capture_output=True, check=True
@@ -217,10 +220,12 @@ def native_times(
     return {key: float(value) for key, value in map(str.split, done.stdout.decode().splitlines())}
 
 
-def python_times(fmu: Path, unpacked: Path, cycles: int) -> Times:
+def measure_python_times(fmu: Path, unpacked: Path, cycles: int) -> Times:
     """Times of the python flavour in fmpy; one call sets all inputs, one call gets all outputs."""
     description = fmpy.read_model_description(str(fmu))
-    slave = Instance(fmpy.extract(str(fmu), str(unpacked)), description, "benchmark", model_exchange=False)
+    slave = FmuInstance(
+        fmpy.extract(str(fmu), str(unpacked)), description, "benchmark", uses_model_exchange=False
+    )
     refs = {
         kind: [v.valueReference for v in description.modelVariables if v.causality == kind]
         for kind in ("input", "output")
@@ -232,7 +237,7 @@ def python_times(fmu: Path, unpacked: Path, cycles: int) -> Times:
     times = {"start": perf_counter() - begin}
     calls = slave.fmu
     now = 0.0
-    for column, rows in trajectories(RANGES[fmu.stem]).items():
+    for column, rows in make_input_paths(RANGES[fmu.stem]).items():
         each = []
         for row in rows[:: ROWS // cycles][:cycles]:
             start = perf_counter()
@@ -252,19 +257,21 @@ def python_times(fmu: Path, unpacked: Path, cycles: int) -> Times:
     return times
 
 
-def measure(folder: Path, quick: bool) -> dict[tuple[str, str], Times]:
+def measure_all_times(folder: Path, quick: bool) -> dict[tuple[str, str], Times]:
     """Times {(name, flavour): times}, measured in rounds over all FMUs."""
     round_count, repeats, cycles = QUICK if quick else (ROUNDS, REPEATS, PYTHON_CYCLES)
     host = build_host(folder)
-    native = [*libraries(folder)]
+    native = [*list_native_libraries(folder)]
     rounds: dict[tuple[str, str], list[Times]] = {(name, flavour): [] for name, flavour, *_ in native}
     for _ in range(round_count):
         for name, flavour, *rest in native:
-            rounds[name, flavour].append(native_times(host, RANGES[name], flavour, *rest, repeats=repeats))
+            rounds[name, flavour].append(
+                measure_native_times(host, RANGES[name], flavour, *rest, repeats=repeats)
+            )
     times = {key: {k: median(t[k] for t in found) for k in found[0]} for key, found in rounds.items()}
     for name in MODELS:
         fmu = folder / "python" / f"{name}.fmu"
-        times[name, "python"] = python_times(fmu, folder / "python" / name, cycles)
+        times[name, "python"] = measure_python_times(fmu, folder / "python" / name, cycles)
     for (_, flavour), found in times.items():
         base = times["PassThrough", "fmi3" if flavour == "fmi3" else "fmi2"]
         found["ratio"] = found["cycle_smooth"] / base["cycle_smooth"]
@@ -275,9 +282,9 @@ def print_longest_steps(folder: Path) -> None:
     """Print median and longest time of a million random steps of each FMU."""
     host = build_host(folder)
     print(f"{'random steps [us]':28} {'median':>9} {'1 in 1e4':>9} {'longest':>9}")
-    for name, flavour, *rest in libraries(folder):
+    for name, flavour, *rest in list_native_libraries(folder):
         if flavour == NATIVE[-1] and name not in PASS_THROUGH:
-            found = native_times(host, RANGES[name], flavour, *rest, repeats=0)
+            found = measure_native_times(host, RANGES[name], flavour, *rest, repeats=0)
             times = [found[key] * 1e6 for key in ("median", "rare", "longest")]
             print(f"{name:28}" + "".join(f" {time:9.2f}" for time in times))
 
@@ -289,18 +296,20 @@ def print_times(times: dict[tuple[str, str], Times]) -> None:
     for name in (*MODELS, *DRIVES_WITH_LOSSES, *PASS_THROUGH):
         for flavour in FLAVOUR_BUILDERS:
             if found := times.get((name, flavour)):
-                print(f"{name:28} {flavour:7}" + "".join(f" {cell(found, key):>13}" for key in COLUMNS))
+                print(
+                    f"{name:28} {flavour:7}" + "".join(f" {format_cell(found, key):>13}" for key in COLUMNS)
+                )
     print()
     for flavour in NATIVE:
-        for name, key, most in targets(times, flavour):
+        for name, key, most in list_targets(times, flavour):
             value = times[name, flavour][key]
             heading = COLUMNS[key][0]
             scale, unit = KB if key == "memory" else US
-            target = f"of {most * scale:8.3f} {unit} {verdict(value, most)}"
+            target = f"of {most * scale:8.3f} {unit} {judge_target(value, most)}"
             print(f"{name:28} {flavour:7} {heading:>13} {value * scale:9.3f} {unit} {target}")
 
 
-def targets(times: dict[tuple[str, str], Times], flavour: str) -> list[tuple[str, str, float]]:
+def list_targets(times: dict[tuple[str, str], Times], flavour: str) -> list[tuple[str, str, float]]:
     """Targets: FMU, measured quantity, largest allowed value [s, bytes]."""
     drive = 1.5 * times[WIDE, flavour]["cycle_smooth"] + 30e-9
     # 1.2 times its ratio to the plain drive before temperature and two load losses were added
@@ -318,7 +327,7 @@ def targets(times: dict[tuple[str, str], Times], flavour: str) -> list[tuple[str
     ]
 
 
-def cell(found: Times, key: str) -> str:
+def format_cell(found: Times, key: str) -> str:
     """Table cell: number in the unit of the column; a dash if it was not measured."""
     if key not in found:
         return "-"
@@ -349,7 +358,7 @@ def print_elastic_sides(folder: Path, quick: bool) -> None:
     rounds: dict[str, list[Times]] = {name: [] for name in made}
     for _ in range(round_count):
         for name, rest in made.items():
-            rounds[name].append(native_times(host, ranges, "fmi3", *rest, repeats=repeats))
+            rounds[name].append(measure_native_times(host, ranges, "fmi3", *rest, repeats=repeats))
     calls = ("step_smooth", "derivative", "start")
     times = {name: [median(t[call] for t in found) for call in calls] for name, found in rounds.items()}
     print(f"{'sides':10} {'step [us]':>10} {'derivative [us]':>16} {'start [us]':>11}")
@@ -362,8 +371,12 @@ def print_elastic_sides(folder: Path, quick: bool) -> None:
 def main() -> None:
     """Build the FMUs, measure the times and print them."""
     flag = {"action": "store_true"}
-    options = read_options(__doc__, worst=flag, elastic_sides=flag)
-    require((sys.platform, platform.machine()) == ("linux", "x86_64"), "Linux on x86_64")
+    options = read_options(
+        __doc__,
+        worst=flag | {"help": "time a million random steps of each FMU, one by one"},
+        elastic_sides=flag | {"help": "time the bolted joint with elastic and with rigid sides"},
+    )
+    require_machine((sys.platform, platform.machine()) == ("linux", "x86_64"), "Linux on x86_64")
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         if options.worst:
@@ -372,7 +385,7 @@ def main() -> None:
             print_elastic_sides(folder, options.quick)
         else:
             build_fmus([], ["python"], None, folder)
-            print_times(measure(folder, options.quick))
+            print_times(measure_all_times(folder, options.quick))
 
 
 if __name__ == "__main__":

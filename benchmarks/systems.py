@@ -21,11 +21,11 @@ import fmpy
 import numpy as np
 from fmpy.ssp.simulation import simulate_ssp
 from fmpy.ssp.ssd import read_ssv
-from harness import fastest, read_options
+from harness import read_options, time_fastest_call
 from jointfmu_tools.run.host import unpack_fmu
 from jointfmu_tools.systems import ssp
 from jointfmu_tools.systems.fmu.assembly import assemble_system
-from jointfmu_tools.systems.fmu.build import build_system
+from jointfmu_tools.systems.fmu.build import build_system_fmus
 from jointfmu_tools.systems.system import load_system
 
 OUTPUTS = {
@@ -52,7 +52,7 @@ TOLERANCE = 5e-3
 MAX_HALVINGS = 6
 
 
-def deviations(found, expected, outputs, late=0.0):
+def largest_output_deviations(found, expected, outputs, late=0.0):
     """Largest deviation of each output over its largest value; `late` [s]: delay of the rows."""
     return {
         o: np.abs(found[o] - np.interp(found["time"] + late, expected["time"], expected[o])).max()
@@ -67,13 +67,15 @@ def run_archive(path, name, one, step, expected, outputs):
     before = time.perf_counter()
     found = simulate_ssp(str(path), stop_time=one.stop_time, step_size=step, parameter_set=parameters)
     taken = time.perf_counter() - before
-    return deviations(found, expected, [o for o in outputs if o in found.dtype.names], step), taken
+    return largest_output_deviations(
+        found, expected, [o for o in outputs if o in found.dtype.names], step
+    ), taken
 
 
 def build_fmu(name: str, out: Path) -> Path:
     """Build one FMU of a system; the axes of an arm are not coupled, as in its archive."""
     system = replace(load_system(name), arm=None)
-    return build_system(assemble_system(system), out / "whole", ("2",), (fmpy.platform_tuple,))[0]
+    return build_system_fmus(assemble_system(system), out / "whole", ("2",), (fmpy.platform_tuple,))[0]
 
 
 def print_longest_steps(out: Path, count: int) -> None:
@@ -107,7 +109,7 @@ def print_longest_steps(out: Path, count: int) -> None:
 
 def main() -> None:
     """Print the tables of times."""
-    options = read_options(__doc__, worst={"action": "store_true", "help": "times of random steps"})
+    options = read_options(__doc__, worst={"action": "store_true", "help": "time a million random steps"})
     if options.worst:
         with tempfile.TemporaryDirectory() as folder:
             print_longest_steps(Path(folder), 2000 if options.quick else RANDOM_STEPS)
@@ -119,7 +121,7 @@ def main() -> None:
         out = Path(folder)
         for name, outputs in systems.items():
             one = load_system(name)
-            ssp.build_systems(out, [one])
+            ssp.build_system_archives(out, [one])
             tolerance, interval = REFERENCE_RUN[name]
             with unpack_fmu(build_fmu(name, out)) as (unzipped, _):
                 common = {"filename": unzipped, "stop_time": one.stop_time, "output": outputs}
@@ -131,7 +133,7 @@ def main() -> None:
                     output_interval=interval,
                 )
                 runs = [
-                    fastest(
+                    time_fastest_call(
                         lambda common=common, step=step: fmpy.simulate_fmu(
                             **common, fmi_type="CoSimulation", step_size=step, output_interval=step
                         ),
@@ -139,8 +141,8 @@ def main() -> None:
                     )
                     for step in STEPS
                 ]
-            found = [deviations(result, expected, outputs) for result, _ in runs]
-            archive, step = out / "ssp" / f"{name}.ssp", one.interval
+            found = [largest_output_deviations(result, expected, outputs) for result, _ in runs]
+            archive, step = out / "ssp" / f"{name}.ssp", one.output_interval
             far, taken = own = run_archive(archive, name, one, step, expected, outputs)
             for _ in range(MAX_HALVINGS):
                 if max(far.values()) < TOLERANCE:
@@ -150,7 +152,9 @@ def main() -> None:
             for k, o in enumerate(outputs):
                 apart = f"{own[0][o]:9.1e}" if o in own[0] else ""
                 print(f"{name if not k else '':16} {o:18} {found[0][o]:9.1e} {found[1][o]:9.1e} {apart}")
-            times.append((name, [t for _, t in runs], one.interval, own[1], step, taken, max(far.values())))
+            times.append(
+                (name, [t for _, t in runs], one.output_interval, own[1], step, taken, max(far.values()))
+            )
     print(
         "\nsystem             1 ms    10 ms |  archive: step   time   ratios |    step   time   ratios   miss"
     )

@@ -6,7 +6,7 @@ One process, one core: set OPENBLAS_NUM_THREADS=1.
 from time import process_time
 
 from jointfmu_tools.studies.uncertainty import propagate
-from jointfmu_tools.studies.uncertainty.problem import state_problem
+from jointfmu_tools.studies.uncertainty.problem import define_joint_study
 
 from jointfmu.parameters import load_default
 
@@ -38,12 +38,12 @@ def main():
     print(f"{SAMPLES} samples, {POINTS} points")
     print(f"{'joint':16} {'processor time of a sample [ms]':>32}")
     for joint, given in STUDIES.items():
-        task = state_problem(load_default(joint), given, None, POINTS)
-        runs = task.list_runs(propagate.sample_designs(task, SAMPLES, 0)[0])
-        task.evaluator.run(0, runs[0])  # opens the joint
+        task = define_joint_study(load_default(joint), given, None, POINTS)
+        runs = task.list_run_settings(propagate.draw_independent_point_sets(task, SAMPLES, 0)[0])
+        task.run_evaluator.execute_run(0, runs[0])  # opens the joint
         start = process_time()
         for i, settings in enumerate(runs):
-            task.evaluator.run(i, settings)
+            task.run_evaluator.execute_run(i, settings)
         print(f"{joint:16} {1e3 * (process_time() - start) / SAMPLES:32.2f}")
 
 

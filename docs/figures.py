@@ -59,7 +59,7 @@ def main() -> None:
     if sys.argv[1:]:
         return
     result = run_default_ramp("HarmonicDriveCompliance", ROOT / "dist" / "python")
-    panels = job.stiffness_charts(result, validation.validate())
+    panels = job.make_stiffness_charts(result, validation.validate_published_numbers())
     write_text(
         IMAGES / "harmonic_drive_ramp.svg",
         svg(lambda canvas: draw_panels(canvas, panels), RESONANCE_FIGURE_SIZE),
@@ -88,12 +88,12 @@ def draw_example(script: Path) -> None:
 
 def draw_tutorial_resonance(path: Path) -> None:
     """Draw the plot at the end of the tutorial."""
-    row = CatalogueRow(K1=4700.0, K2=6100.0, K3=7100.0, T1=2.0, T2=6.9, rated=6.9)
+    row = CatalogueRow(K1=4700.0, K2=6100.0, K3=7100.0, T1=2.0, T2=6.9, rated_torque=6.9)
     drive = catalogue.make_drive_with_catalogue_law_from_row(
-        row, sourced_numbers=catalogue.make_sourced_numbers(row, ratio=100.0)
+        row, sourced_numbers=catalogue.make_sourced_numbers(row, speed_ratio=100.0)
     ).parameters
     with TemporaryDirectory() as folder:
-        ssp.build_systems(Path(folder), parameters=drive)
+        ssp.build_system_archives(Path(folder), parameter_file=drive)
         one = ringing.find_vibrating_joint(load_system("robot_joint"))
         points = ringing.simulate_vibrations(one, Path(folder) / "fmi2")
         with plots.open_figure(path, RESONANCE_FIGURE_SIZE) as canvas:
@@ -125,7 +125,7 @@ def draw_architecture() -> str:
 def svg(draw: Callable[[Figure], None], size: tuple[float, float], layout: str | None = "constrained") -> str:
     """Context with a figure of a size [inch], saved as small SVG: coordinates in hundredths of a point, no
     metadata."""
-    with plots.apply_style():
+    with plots.apply_plot_style():
         figure, text = Figure(figsize=size, layout=layout), io.StringIO()
         draw(figure)
         figure.savefig(text, format="svg", metadata={"Date": None})

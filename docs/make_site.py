@@ -90,7 +90,7 @@ def redirect_links(markdown: str, source: str) -> tuple[str, set[str]]:
     folders are removed."""
     here, linked = posixpath.dirname(source) or ".", set()
 
-    def lead(match: re.Match[str]) -> str:
+    def convert_lead_link(match: re.Match[str]) -> str:
         text, target, anchor = match.groups()
         path = repository_path(source, target)
         if path is None or not (ROOT / path).exists():
@@ -101,7 +101,7 @@ def redirect_links(markdown: str, source: str) -> tuple[str, set[str]]:
             linked.add(path)
         return f"[{text}]({posixpath.relpath(site_path(path), here)}{anchor or ''})"
 
-    return _LINK.sub(lead, markdown), linked
+    return _LINK.sub(convert_lead_link, markdown), linked
 
 
 def copy_inputs(docs: Path, notebooks: Path | None) -> None:
@@ -155,14 +155,18 @@ def build(out: Path, notebooks: Path | None) -> int:
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument(
-        "--out", type=Path, default=ROOT / "dist/docs", metavar="FOLDER", help="default: dist/docs"
+        "--out",
+        type=Path,
+        default=ROOT / "dist/docs",
+        metavar="FOLDER",
+        help="folder to write (default: dist/docs)",
     )
     parser.add_argument(
         "--notebooks",
         type=Path,
         metavar="FOLDER",
-        help="take notebooks with output from this folder, for example dist/docs/examples, and run only the "
-        "examples that it does not have",
+        help="folder with notebooks that have output, as in dist/docs/examples; only the other examples are "
+        "run",
     )
     arguments = parser.parse_args()
     sys.exit(build(arguments.out, arguments.notebooks))

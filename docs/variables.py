@@ -14,13 +14,13 @@ def page() -> str:
     return "\n\n".join([text.rstrip(), *(_fmu(model) for model in MODELS.values())]) + "\n"
 
 
-def _fmu(model: Model) -> str:
-    file = load_default(model.joint)
-    parts = [f"## {model.name}", f"As shipped, the parameters are those of: {file.name}."]
-    parts += ["**Inputs**", _table(_rows(model.inputs)), "**Outputs**", _table(_rows(model.outputs))]
+def _fmu(fmu_model: Model) -> str:
+    file = load_default(fmu_model.joint)
+    parts = [f"## {fmu_model.name}", f"As shipped, the parameters are those of: {file.name}."]
+    parts += ["**Inputs**", _table(_rows(fmu_model.inputs)), "**Outputs**", _table(_rows(fmu_model.outputs))]
     parameters = [
         (name, field.metadata.get("unit", ""), field.metadata["doc"])
-        for name, field in model.parameter_fields().items()
+        for name, field in fmu_model.parameter_fields().items()
         if name in file.values_by_name
     ]
     return "\n\n".join([*parts, "**Parameters**", _table(parameters)])

@@ -33,7 +33,7 @@ def staging_folder(target_path: Path) -> Iterator[Path]:
 
 
 def write_archive(content_by_path: Mapping[str, bytes], archive_path: Path) -> None:
-    """Write a zip archive of {path: content}, with sorted members, a fixed date and a fixed system."""
+    """Write a zip archive of {path: content}; equal content gives equal bytes."""
     with zipfile.ZipFile(archive_path, "w") as archive:
         for name, content in sorted(content_by_path.items()):
             info = zipfile.ZipInfo(name, date_time=(1980, 1, 1, 0, 0, 0))

@@ -39,7 +39,7 @@ __all__ = [
     "prepare_metadata_for_build_wheel",
 ]
 
-PACKAGE_FOLDERS = {
+PACKAGE_SOURCE_FOLDERS = {
     "jointfmu": "core/jointfmu",
     "jointfmu_fmu_src": "fmu_src",
     "jointfmu_tools": "tools",
@@ -56,25 +56,25 @@ PROJECT_URL_PATHS = {
 """{label of a project URL: path below the address of the repository}."""
 
 
-def make_description(readme: str, url: str) -> str:
-    """Long description: the README, with links to the repository at `url` if there is one."""
-    if not url:
-        return readme
-    readme = re.sub(r"(!\[[^\]]*\]\()(?!https?:)", rf"\g<1>{url}/raw/HEAD/", readme)
-    return re.sub(r"((?<!!)\[[^\]]*\]\()(?!https?:|#)", rf"\g<1>{url}/blob/HEAD/", readme)
+def make_long_description(readme_text: str, repository_url: str) -> str:
+    """Long description of the package: the README, with links to the repository if its URL is given."""
+    if not repository_url:
+        return readme_text
+    readme_text = re.sub(r"(!\[[^\]]*\]\()(?!https?:)", rf"\g<1>{repository_url}/raw/HEAD/", readme_text)
+    return re.sub(r"((?<!!)\[[^\]]*\]\()(?!https?:|#)", rf"\g<1>{repository_url}/blob/HEAD/", readme_text)
 
 
-def setup_arguments() -> dict[str, Any]:
-    """Arguments of `setuptools.setup` that pyproject.toml does not have. Call it in the root folder."""
+def make_setuptools_arguments() -> dict[str, Any]:
+    """Arguments of `setuptools.setup` that pyproject.toml does not have; the working folder is the root."""
     url = os.environ.get("JOINTFMU_URL", "").rstrip("/")
     return {
         "packages": [
             name
-            for root, folder in PACKAGE_FOLDERS.items()
+            for root, folder in PACKAGE_SOURCE_FOLDERS.items()
             for name in (root, *(f"{root}.{inner}" for inner in setuptools.find_packages(folder)))
         ],
-        "package_dir": PACKAGE_FOLDERS,
-        "long_description": make_description(Path("README.md").read_text(encoding="utf-8"), url),
+        "package_dir": PACKAGE_SOURCE_FOLDERS,
+        "long_description": make_long_description(Path("README.md").read_text(encoding="utf-8"), url),
         "long_description_content_type": "text/markdown",
         "project_urls": {"Repository": url, **{n: url + path for n, path in PROJECT_URL_PATHS.items()}}
         if url
@@ -87,30 +87,30 @@ def build_editable(
 ) -> str:
     """Build the editable wheel of setuptools, with the folder of the package `jointfmu` on the search path.
 
-    Setuptools finds the packages by an import hook, which comes after the search path. There a clone of the
-    repository in a folder `jointfmu` would be taken for the package, as a namespace package.
+    Setuptools finds the packages by an import hook, which comes after the search path. So Python would first
+    find a clone of the repository in a folder `jointfmu`, and import this folder as a namespace package.
     """
     name: str = build_meta.build_editable(wheel_directory, config_settings, metadata_directory)
     _append_search_path(Path(wheel_directory, name), Path(CORE_PACKAGE_FOLDER).resolve())
     return name
 
 
-def _append_search_path(wheel: Path, folder: Path) -> None:
-    """Append a folder of modules to the path configuration file (.pth) of an editable wheel."""
-    with zipfile.ZipFile(wheel) as archive:
+def _append_search_path(wheel_path: Path, module_folder: Path) -> None:
+    """Append a folder of modules to the module search path file (.pth) of an editable wheel."""
+    with zipfile.ZipFile(wheel_path) as archive:
         contents = {item: archive.read(item) for item in archive.infolist()}
     (search_path,) = (item for item in contents if item.filename.endswith(".pth"))
     (record,) = (item for item in contents if item.filename.endswith(".dist-info/RECORD"))
-    text = contents[search_path].rstrip() + f"\n{folder}\n".encode()
+    text = contents[search_path].rstrip() + f"\n{module_folder}\n".encode()
     digest = base64.urlsafe_b64encode(hashlib.sha256(text).digest()).rstrip(b"=").decode()
     rows = contents[record].decode().splitlines()
     rows = [row for row in rows if not row.startswith(f"{search_path.filename},")]
     rows.append(f"{search_path.filename},sha256={digest},{len(text)}")
     contents |= {search_path: text, record: "".join(f"{row}\n" for row in rows).encode()}
-    with zipfile.ZipFile(wheel, "w", zipfile.ZIP_DEFLATED) as archive:
+    with zipfile.ZipFile(wheel_path, "w", zipfile.ZIP_DEFLATED) as archive:
         for item, content in contents.items():
             archive.writestr(item, content)
 
 
 # the hooks of setuptools call `setup()` of a project without setup.py
-setuptools.setup = partial(setuptools.setup, **setup_arguments())
+setuptools.setup = partial(setuptools.setup, **make_setuptools_arguments())

@@ -10,7 +10,7 @@ from importlib import import_module
 from importlib.metadata import PackageNotFoundError, files
 from pathlib import Path
 
-_THIRD_PARTY_FOLDER = Path(__file__).with_name("licenses")
+_THIRD_PARTY_LICENCE_FOLDER = Path(__file__).with_name("licenses")
 """Folder of the third-party licence texts, unchanged; the wheel lists them as licence files too."""
 
 
@@ -26,12 +26,15 @@ def read_licence() -> str:
         raise ValueError("LICENSE: missing in the installed package jointfmu; install it again") from None
 
 
-def licence_files() -> dict[str, bytes]:
-    """{path in the folder documentation: content} of an FMU's licence texts; raises as `read_licence`."""
-    return {"licenses/license.txt": read_licence().encode()} | dict(_third_party_licences())
+def read_licence_files() -> dict[str, bytes]:
+    """Read the licence texts of an FMU: {path in its folder documentation: content}.
+
+    Raises ValueError as `read_licence`.
+    """
+    return {"licenses/license.txt": read_licence().encode()} | dict(_read_third_party_licences())
 
 
-_WASI_LICENCES = (
+_WASI_LIBC_LICENCE_FILES = (
     "LICENSE",
     "LICENSE-MIT",
     "libc-top-half/musl/COPYRIGHT",
@@ -46,16 +49,19 @@ def read_webassembly_licences() -> str:
     Raises ImportError if ziglang is missing, ValueError as `read_licence`.
     """
     folder = Path(str(import_module("ziglang").__file__)).parent / "lib" / "libc" / "wasi"
-    texts = (f"wasi-libc, {name}\n\n{(folder / name).read_text(encoding='utf-8')}" for name in _WASI_LICENCES)
+    texts = (
+        f"wasi-libc, {name}\n\n{(folder / name).read_text(encoding='utf-8')}"
+        for name in _WASI_LIBC_LICENCE_FILES
+    )
     return "\n\n".join([f"jointfmu\n\n{read_licence()}", *texts])
 
 
-def _third_party_licences() -> Iterator[tuple[str, bytes]]:
-    """Yield path in an FMU and content of each third-party licence text."""
-    for path in sorted(_THIRD_PARTY_FOLDER.glob("*.txt")):
+def _read_third_party_licences() -> Iterator[tuple[str, bytes]]:
+    """Yield (path in the FMU's folder documentation, content) of each third-party licence text."""
+    for path in sorted(_THIRD_PARTY_LICENCE_FOLDER.glob("*.txt")):
         yield f"licenses/{path.name}", path.read_bytes()
 
 
 def find_copyright_line() -> str:
-    """Copyright line of the licence text."""
+    """Copyright line of the licence text of the package jointfmu."""
     return next(line for line in read_licence().splitlines() if line.startswith("Copyright"))

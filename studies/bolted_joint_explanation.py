@@ -15,7 +15,7 @@ from io import StringIO
 from pathlib import Path
 
 import numpy as np
-from common import heading, row, run_study
+from common import print_table_head, print_table_row, run_study
 from jointfmu_tools import cli
 from jointfmu_tools.fem.bolted_contact import BoltedContact
 from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate, TappedPlate
@@ -77,37 +77,40 @@ def compute_pressure(file: ParameterFile, options: str) -> PressureDistribution:
             TappedPlate(**flatten_parameters(side) | {"thickness": second, "depth": thread.nominal_diameter}),
         ]
     bolts = BoltList(
-        x=pattern.x, y=pattern.y, hole_diameter=pattern.hole_diameter, head_diameter=thread.hexagon
+        x=pattern.x,
+        y=pattern.y,
+        hole_diameter=pattern.hole_diameter,
+        head_diameter=thread.hexagon_bearing_diameter,
     )
     contact = BoltedContact.from_assembly(Assembly(file.name, *sides, bolts))
     preload = file.start_value("preload")
-    field = contact.solve(tabulate_approach(file.values), preload).contact_field
-    return normalise_pressure_field(replace(file.values, A_0=float(field.area.sum())), field, preload)
+    field = contact.solve_equilibrium(tabulate_approach(file.values), preload).contact_field
+    return normalise_pressure_field(replace(file.values, A_0=float(field.nodal_area.sum())), field, preload)
 
 
 def format_pressure(file: ParameterFile, shape: PressureDistribution, fine: PressureDistribution) -> str:
     """Format two lines: force inside the circles, and stiffness of the joint."""
-    bolts = file.values.pattern.bolts
+    bolts = file.values.pattern.bolt_positions
     apart = np.hypot(*np.moveaxis(fine.position[:, None, :] - bolts, -1, 0)).min(axis=1)
     force, rest = fine.area_share * fine.preload_pressure_ratio, (0.0, 0.0, 0.0)
     shares = "  ".join(f"{force[apart < r].sum():.3f} in {r * 1e3:g} mm" for r in RADII)
     shares += f"  radius of gyration {1e3 * np.sqrt(force @ apart**2):.4g} mm"
-    spring = BoltedJointSpring.for_interface_nodes(file.values, shape)
+    spring = BoltedJointSpring.from_interface_nodes(file.values, shape)
     state = spring.evaluate(file.start_value("preload"), 0.0, rest, rest)
     return f"{shares}\n  {'':9} " + "  ".join(f"{name} {float(state[name]):.4g}" for name in OUTPUTS)
 
 
 def print_pressures() -> None:
     """Print the contact pressure by pressure cones and by finite elements."""
-    usual = plate.MIN_CELLS_PER_RADIUS
+    usual = plate.MIN_CELLS_PER_PRESSURE_RADIUS
     for name, options in PLATES.items():
         print(name)
         with tempfile.TemporaryDirectory() as folder:
             file = make_joint(options, Path(folder))
         cones = file.values.pattern.pressure_distribution()
-        plate.MIN_CELLS_PER_RADIUS = FINE_CELLS
+        plate.MIN_CELLS_PER_PRESSURE_RADIUS = FINE_CELLS
         fine = file.values.pattern.pressure_distribution()
-        plate.MIN_CELLS_PER_RADIUS = usual
+        plate.MIN_CELLS_PER_PRESSURE_RADIUS = usual
         elastic = compute_pressure(file, options)
         for what, shape, finer in (("cones", cones, fine), ("computed", elastic, elastic)):
             print(f"  {what:9} {format_pressure(file, shape, finer)}")
@@ -118,10 +121,12 @@ def print_pressures() -> None:
 STIFFNESSES = ("xx", "yy", "zz", "rx", "ry", "rz")
 
 
-def joint_facts(attached: str, example: dict[str, object]) -> dict[str, float]:
+def compute_joint_results(attached: str, example: dict[str, object]) -> dict[str, float]:
     """Results {name: value} that `jointfmu new bolted-joint` prints for an attached or clamped joint."""
     options = (
-        dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.options) | example | {"attached": attached}
+        dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.command_options)
+        | example
+        | {"attached": attached}
     )
     return {name: value for name, (value, _, _) in dict(NEW_JOINT_COMMAND.make_joint(options).facts).items()}
 
@@ -129,12 +134,16 @@ def joint_facts(attached: str, example: dict[str, object]) -> dict[str, float]:
 def print_attachments() -> None:
     """Print stiffness and load factor for each attachment, and of a joint with one bolt compared with VDI
     2230."""
-    heading("", "attached", *(f"K_{name}" for name in STIFFNESSES), "load factor", "interface")
+    print_table_head("", "attached", *(f"K_{name}" for name in STIFFNESSES), "load factor", "interface")
     for attached in ("faces", "edge", "heads"):
-        found = joint_facts(attached, EXAMPLE)
+        found = compute_joint_results(attached, EXAMPLE)
         cells = [f"{found[f'joint_K_{name}']:.3g}" for name in STIFFNESSES]
-        row(f"`{attached}`", *cells, f"{found['joint_load_factor']:.3f}", f"{found['interface_share']:.1%}")
-    found = joint_facts("heads", EXAMPLE | {"plate": "80x80", "bolts": "M16", "at": None, "preload": "60e3"})
+        print_table_row(
+            f"`{attached}`", *cells, f"{found['joint_load_factor']:.3f}", f"{found['interface_share']:.1%}"
+        )
+    found = compute_joint_results(
+        "heads", EXAMPLE | {"plate": "80x80", "bolts": "M16", "at": None, "preload": "60e3"}
+    )
     members = found["joint_K_zz"] - found["bolt_stiffness"]
     print(f"\none M16, heads: members with interface {members:.4g} N/m, ", end="")
     print(f"VDI 2230 {found['member_stiffness']:.4g};")

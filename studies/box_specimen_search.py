@@ -101,8 +101,8 @@ class Box:
             u, gap = above.ravel(), (below - above).ravel()
             opening = [row @ gap for row in rows]
             squares = tangential * (opening[0] ** 2 + opening[1] ** 2) + normal * opening[2] ** 2
-            energy = 2.0 * u @ (self.body.stiffness @ u) + self.interface.quadrature_area @ squares
-            values.append(energy / (2.0 * u @ (self.body.mass @ u)))
+            energy = 2.0 * u @ (self.body.stiffness_matrix @ u) + self.interface.quadrature_area @ squares
+            values.append(energy / (2.0 * u @ (self.body.mass_matrix @ u)))
         return np.array(values)
 
 
@@ -136,7 +136,7 @@ def fit_lengths(
 
     def error(logs: Array) -> Array:
         known[logs.tobytes()] = found = Box.of(np.exp(logs)).modes(joint, force)
-        return np.asarray(found.frequency / target - 1.0)
+        return np.asarray(found.natural_frequencies / target - 1.0)
 
     def slope(logs: Array) -> Array:
         found = known[logs.tobytes()]
@@ -146,7 +146,7 @@ def fit_lengths(
             moved = logs.copy()
             moved[k] += STEP
             change = Box.of(np.exp(moved)).squares(joint, force, found) / first - 1.0
-            columns.append(0.5 * change / STEP * found.frequency / target)
+            columns.append(0.5 * change / STEP * found.natural_frequencies / target)
         return np.stack(columns, axis=1)
 
     least, most = np.log(MIN_LENGTHS[: start.size]), np.log(MAX_LENGTHS[: start.size])
@@ -167,7 +167,7 @@ def random_starts(
             lengths = MIN_LENGTHS[:size] * (MAX_LENGTHS[:size] / MIN_LENGTHS[:size]) ** rng.random(size)
             if lengths[0] < 2.0 * lengths[[2, 4, 5]].sum() + 0.04 or lengths[1] < lengths[3] + 0.1:
                 continue
-            found = Box.of(lengths).modes(joint, force).frequency
+            found = Box.of(lengths).modes(joint, force).natural_frequencies
             tried.append((float(np.sum(np.log(found / target) ** 2)), lengths))
         yield min(tried, key=lambda one: one[0])[1]
 
@@ -186,7 +186,7 @@ def print_fits(target: Array, states: Sequence[tuple[float, float]], fit_count: 
         lengths, error = min(found, key=lambda each: float(each[1] @ each[1]))
         errors = sorted(100 * float(np.sqrt(np.mean(e**2))) for _, e in found)
         fitted = target[0] * (1.0 + error)
-        rise = Box.of(lengths).modes(joint, higher_force).frequency / fitted - 1.0
+        rise = Box.of(lengths).modes(joint, higher_force).natural_frequencies / fitted - 1.0
         print(f"{area}, {spot}, {ends}: rms errors [%]", *(f"{e:.1f}" for e in errors))
         print("  lengths [mm]", *(f"{n} {1e3 * v:.1f}" for n, v in zip(NAMES, lengths, strict=False)))
         print("  error at 9 kN [%]   ", *(f"{100 * e:6.1f}" for e in error))

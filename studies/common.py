@@ -15,23 +15,23 @@ IMAGES = ROOT / "docs" / "images"
 sys.path.append(str(ROOT / "tests"))
 
 
-def row(*cells):
+def print_table_row(*cells):
     """Print one row of a Markdown table."""
     print("| " + " | ".join(str(cell) for cell in cells) + " |", flush=True)
 
 
-def heading(title, *columns):
+def print_table_head(title, *columns):
     """Print the title and the head of a Markdown table."""
     print(f"\n{title}\n" if title else "")
-    row(*columns)
+    print_table_row(*columns)
     print("|" + "---|" * len(columns))
 
 
 def print_table(columns, rows):
     """Print a Markdown table without a title."""
-    heading("", *columns)
+    print_table_head("", *columns)
     for cells in rows:
-        row(*cells)
+        print_table_row(*cells)
 
 
 def format_mean_and_deviation(values, form="{:.2g}"):
@@ -56,7 +56,9 @@ def run_study(
     )
     usual = [name for name in sections if name not in on_request]
     more = f"; on request: {', '.join(on_request)}" if on_request else ""
-    parser.add_argument("section", nargs="*", help=f"{', '.join(usual)} (default: all of these){more}")
+    parser.add_argument(
+        "section", nargs="*", help=f"sections to run: {', '.join(usual)} (default: all of these){more}"
+    )
     for flag, keywords in (options or {}).items():
         parser.add_argument(flag, **keywords)  # type: ignore[arg-type]
     given = parser.parse_args()

@@ -23,11 +23,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from common import heading, row, run_study
+from common import print_table_head, print_table_row, run_study
 from jointfmu_tools import cli
 from jointfmu_tools.inputs.fields import nodal_result
 from jointfmu_tools.inputs.fields.joint_parameters import normalise_pressure_field
-from jointfmu_tools.inputs.fields.nodal_result import ContactField
+from jointfmu_tools.inputs.fields.nodal_result import ContactPressureField
 from jointfmu_tools.inputs.fields.reduction import reduce_field
 from numpy.typing import NDArray
 from oracles import contact_patches as contacts
@@ -48,9 +48,9 @@ from jointfmu.parameters import load_default
 Array = NDArray[np.float64]
 
 
-def default_spring() -> BoltedJointSpring:
+def make_default_spring() -> BoltedJointSpring:
     """Spring of the default bolted joint in Python."""
-    return BoltedJointSpring.for_joint(load_default("bolted_joint").values)
+    return BoltedJointSpring.from_joint(load_default("bolted_joint").values)
 
 
 # reduction
@@ -65,7 +65,7 @@ UNEVENNESS = 0.1
 """Increase of the pressure along the bolt rows [1], so that the field has no symmetry."""
 
 
-def nodal_field(cells: int, open_pressure: float) -> ContactField:
+def make_nodal_field(cells: int, open_pressure: float) -> ContactPressureField:
     """Nodal pressure field of the default frame; nodes below `open_pressure` [1] are open."""
     joint = load_default("bolted_joint").values
     bolts.CELLS_ACROSS_FLANGE = cells
@@ -73,30 +73,30 @@ def nodal_field(cells: int, open_pressure: float) -> ContactField:
     x = shape.position[:, 0]
     p = np.maximum(shape.preload_pressure_ratio * (1.0 + UNEVENNESS * x / np.ptp(x)) - open_pressure, 0.0)
     p *= PRELOAD * joint.n_bolts / joint.A_0 / (shape.area_share @ p)
-    return ContactField(shape.area_share * joint.A_0, shape.position, p)
+    return ContactPressureField(shape.area_share * joint.A_0, shape.position, p)
 
 
 def print_reduction() -> None:
     """Number of points, deviation and time of the reduction of a nodal field."""
     joint = load_default("bolted_joint").values
-    heading("", "nodes", "open", "points", "deviation", "s", "s of the command")
+    print_table_head("", "nodes", "open", "points", "deviation", "s", "s of the command")
     for cells in CELLS_ACROSS_FLANGE:
         for open_pressure in (0.0, OPEN_PRESSURE):
-            field = nodal_field(cells, open_pressure)
+            field = make_nodal_field(cells, open_pressure)
             start = time.process_time()
             shape = normalise_pressure_field(joint, field, PRELOAD)
-            joint_of_field = replace(joint, A_0=float(field.area.sum()))
+            joint_of_field = replace(joint, A_0=float(field.nodal_area.sum()))
             found = reduce_field(joint_of_field, shape, PRELOAD, preload_pressure)
             seconds = time.process_time() - start
             with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
                 path = Path(folder) / "field.csv"
-                path.write_text(nodal_result.csv_text(field))
+                path.write_text(nodal_result.format_field_csv(field))
                 start = time.process_time()
                 words = ["footprint", "import", str(path), "--preload", f"{PRELOAD:g}", "--open", "keep"]
                 cli.main([*words, "--out", str(path.with_suffix(".toml"))])
                 command_seconds = time.process_time() - start
-            open_share = float(np.mean(field.pressure == 0.0))
-            row(
+            open_share = float(np.mean(field.nodal_pressure == 0.0))
+            print_table_row(
                 found.node_count,
                 f"{open_share:.0%}",
                 found.point_count,
@@ -123,9 +123,9 @@ REDUCTIONS = {
 
 def print_normal() -> None:
     """Print the deviation of forces and stiffnesses at few points from the results at all nodes."""
-    spring = default_spring()
+    spring = make_default_spring()
     mean = contacts.mean_pressure(spring)
-    heading("", "contact", "nodes", "points", "s", *contacts.ranges(1.0))
+    print_table_head("", "contact", "nodes", "points", "s", *contacts.ranges(1.0))
     for name, shape in contacts.contacts():
         for count in POINT_COUNTS:
             start = time.perf_counter()
@@ -135,10 +135,10 @@ def print_normal() -> None:
                 "{:.0e}, {:.0e}".format(*contacts.deviation(spring.curve, mean, shape, points, states))
                 for states in contacts.ranges(contacts.opening_moment(shape)).values()
             ]
-            row(name, shape.area_share.size, points.area_share.size, f"{seconds:.1f}", *cells)
+            print_table_row(name, shape.area_share.size, points.area_share.size, f"{seconds:.1f}", *cells)
 
 
-def sheared_contacts() -> Iterator[tuple[str, list[PressureDistribution]]]:
+def list_sheared_contacts() -> Iterator[tuple[str, list[PressureDistribution]]]:
     """Groups of contacts in the table of friction; the table has the largest deviation of each group."""
     yield from ((name, [shape]) for name, shape in contacts.contacts())
     yield f"{RANDOM_PLATES} random plates", [contacts.random_plate(seed) for seed in range(RANDOM_PLATES)]
@@ -163,14 +163,14 @@ def friction_deviations(spring: BoltedJointSpring, shape: PressureDistribution) 
 
 def print_friction() -> None:
     """Print the deviation of friction force and loop areas from all nodes with many sliders."""
-    spring = default_spring()
-    heading("", "contact", "patches", *contacts.MOTIONS, "any pole: 95 %, all")
-    for name, shapes in sheared_contacts():
+    spring = make_default_spring()
+    print_table_head("", "contact", "patches", *contacts.MOTIONS, "any pole: 95 %, all")
+    for name, shapes in list_sheared_contacts():
         found = [friction_deviations(spring, shape) for shape in shapes]
         for count, worst in zip(PATCH_COUNTS, np.max(found, axis=0), strict=True):
             poles = [contacts.pole_deviations(shape, reduce_patches(shape, count)) for shape in shapes]
             cells = [f"{force:.1e}, {area:.1%}" for force, area in worst]
-            row(name, count, *cells, "{:.1%}, {:.1%}".format(*np.max(poles, axis=0)))
+            print_table_row(name, count, *cells, "{:.1%}, {:.1%}".format(*np.max(poles, axis=0)))
 
 
 def print_poles() -> None:
@@ -178,13 +178,15 @@ def print_poles() -> None:
 
     The last column has the same patches without their radius, as single points.
     """
-    heading("", "contact", "patches", "", "points")
+    print_table_head("", "contact", "patches", "", "points")
     for name, shape in contacts.contacts():
         for label, (count, reduction) in REDUCTIONS.items():
             patches = reduction(shape, count)
-            points = patches.as_patches()
+            points = patches.make_friction_patches()
             both = (patches if isinstance(patches, FrictionPatches) else points), points
-            row(name, label, *("{:.1%}, {:.1%}".format(*contacts.pole_deviations(shape, x)) for x in both))
+            print_table_row(
+                name, label, *("{:.1%}, {:.1%}".format(*contacts.pole_deviations(shape, x)) for x in both)
+            )
 
 
 # sliders
@@ -210,7 +212,7 @@ def print_sliders() -> None:
 def print_loops() -> None:
     """Print the deviation of the backbone over the friction limit, and of the loop areas."""
     friction = sphere.FRICTION * float(sphere.load(APPROACH))
-    heading("", "sliders", "backbone", *(f"loop {part:g}" for part in SPHERE_AMPLITUDES))
+    print_table_head("", "sliders", "backbone", *(f"loop {part:g}" for part in SPHERE_AMPLITUDES))
     x = np.linspace(0.0, 1.2 * sphere.FRICTION * APPROACH / sphere.RATIO, 121)
     for step in LEVEL_STEPS:
         sliders = sphere.foundation(step)
@@ -223,13 +225,13 @@ def print_loops() -> None:
             path = np.array([[APPROACH, place, 0.0] for place in (0.0, u, -u, u)])
             loss = np.sum(sphere.follow_path(sliders, path)[1][1:])
             areas.append(loss / sphere.loop_area(APPROACH, part) - 1.0)
-        row(sliders.slider_count, f"{worst:.1e}", *(f"{a:+.1%}" for a in areas))
+        print_table_row(sliders.slider_count, f"{worst:.1e}", *(f"{a:+.1%}" for a in areas))
 
 
 def print_motions() -> None:
     """Print the deviations for combined motions: of the force over the largest friction limit, and of the
     loss."""
-    heading("", "sliders", *(what for name in sphere.MOTIONS for what in (f"{name}: force", "loss")))
+    print_table_head("", "sliders", *(what for name in sphere.MOTIONS for what in (f"{name}: force", "loss")))
     exact = {name: sphere.follow_springs(path) for name, path in sphere.MOTIONS.items()}
     for step in LEVEL_STEPS:
         sliders, cells = sphere.foundation(step), []
@@ -238,13 +240,13 @@ def print_motions() -> None:
             largest = sphere.FRICTION * float(sphere.load(np.max(path[:, 0])))
             worst = np.max(np.abs(tractions - exact[name][0])) / largest
             cells += [f"{worst:.1e}", f"{np.sum(losses) / exact[name][1] - 1.0:+.1%}"]
-        row(sliders.slider_count, *cells)
+        print_table_row(sliders.slider_count, *cells)
 
 
 def print_turns() -> None:
     """Print loss per turn and force over friction limit, for circles of 1.5 times gross slip in the steady
     state."""
-    heading("", "steps a turn", "loss", "force")
+    print_table_head("", "steps a turn", "loss", "force")
     sliders, gross = sphere.foundation(0.2), sphere.FRICTION * APPROACH / sphere.RATIO
 
     def last_turn(steps: int) -> tuple[Array, float]:
@@ -258,7 +260,7 @@ def print_turns() -> None:
     for steps in STEPS_PER_TURN[:-1]:
         found, found_loss = last_turn(steps)
         deviation = np.hypot(*(found - force)) / (sphere.FRICTION * sphere.load(APPROACH))
-        row(steps, f"{found_loss / loss - 1.0:+.2%}", f"{deviation:.1e}")
+        print_table_row(steps, f"{found_loss / loss - 1.0:+.2%}", f"{deviation:.1e}")
 
 
 # foundation
@@ -359,28 +361,28 @@ def largest_deviations(spring: BoltedJointSpring, first: float = 1.0) -> tuple[f
 def print_foundation() -> None:
     """Print the tables of the joint's patches and sliders."""
     loops = [f"loop {x:g}" for x in JOINT_AMPLITUDES]
-    heading("", "law", "first", "force", *loops)
+    print_table_head("", "law", "first", "force", *loops)
     joints: dict[str, AnyBoltedJoint] = {
         "zhao2018": load_default("bolted_joint").values,
         "roughness": load_default("bolted_joint", "roughness").values,
     }
     for name, joint in joints.items():
-        spring = BoltedJointSpring.for_joint(joint)
+        spring = BoltedJointSpring.from_joint(joint)
         for first in FIRST_PRELOADS:
             force, areas = largest_deviations(spring, first)
-            row(name, f"{first:g}", f"{force:.2%}", *(f"{a:.1%}" for a in areas))
+            print_table_row(name, f"{first:g}", f"{force:.2%}", *(f"{a:.1%}" for a in areas))
     per_patch = spring.friction_law.foundation().slider_count
     print(f"{spring.patches.area_share.size} patches, {per_patch} sliders each")
 
     shape = pressure_distribution(load_default("bolted_joint").values.pattern)
-    heading("", "patches", "sliders each", "force", *loops, "any pole: 95 %, all")
+    print_table_head("", "patches", "sliders each", "force", *loops, "any pole: 95 %, all")
     for counts in SLIDER_COUNTS:
         set_slider_counts(*counts)
-        spring = default_spring()
+        spring = make_default_spring()
         force, areas = largest_deviations(spring)
         poles = "{:.1%}, {:.1%}".format(*contacts.pole_deviations(shape, spring.patches))
         per_patch = spring.friction_law.foundation().slider_count
-        row(counts[0], per_patch, f"{force:.2%}", *(f"{x:.1%}" for x in areas), poles)
+        print_table_row(counts[0], per_patch, f"{force:.2%}", *(f"{x:.1%}" for x in areas), poles)
     set_slider_counts(*SLIDER_COUNTS[0])
     print_swings()
 
@@ -388,14 +390,17 @@ def print_foundation() -> None:
 def set_slider_counts(patches: int, below: int, above: int) -> None:
     """Set the number of patches and slider heights of all joints made afterwards."""
     joint_module.MAX_PATCHES = patches
-    slider_module.HEIGHTS_BELOW_REFERENCE, slider_module.SLIDER_HEIGHT_COUNT_ABOVE_REFERENCE = below, above
+    slider_module.HEIGHTS_BELOW_REFERENCE, slider_module.HEIGHTS_ABOVE_REFERENCE = (
+        below,
+        above,
+    )
     joint_module.find_friction_patches.cache_clear()
 
 
 def print_swings() -> None:
     """Print the shear force at constant displacement under an oscillating normal force, over the first shear
     force."""
-    spring = default_spring()
+    spring = make_default_spring()
     share, reference = spring.patches.area_share, spring.friction_law.foundation()
     start = spring.curve.inverse(preload_pressure(spring.joint, spring.patches, SWING_PRELOAD, 0.0))
 
@@ -404,7 +409,7 @@ def print_swings() -> None:
 
     opening = brentq(lambda x: load(x) - (1.0 - SWING) * load(0.0), 0.0, float(np.ptp(start)) + 1e-6)
     low, sliders = start - opening, spring.friction_law.foundation(start)
-    heading("", "shear over friction", "by the theorem", *(f"{n} cycles" for n in CYCLES))
+    print_table_head("", "shear over friction", "by the theorem", *(f"{n} cycles" for n in CYCLES))
     for part in (0.5, 0.7, 0.9):
         target = part * spring.joint.mu * load(0.0)
         u = brentq(lambda u, f=target: share @ reference.virgin_traction(start, u) - f, 0.0, 1e-5)
@@ -419,7 +424,7 @@ def print_swings() -> None:
                 moved = law.advance(moved.force, before, after, 0.0 * increment)
             if cycle in CYCLES:
                 found.append(share @ moved.traction[:, 0] / first)
-        row(f"{part:g}", f"{exact:.4f}", *(f"{x:.4f}" for x in found))
+        print_table_row(f"{part:g}", f"{exact:.4f}", *(f"{x:.4f}" for x in found))
 
 
 if __name__ == "__main__":

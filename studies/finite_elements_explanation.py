@@ -31,7 +31,7 @@ from jointfmu_tools.fem import convergence
 from jointfmu_tools.fem.assembly import read_assembly
 from jointfmu_tools.fem.bolted_contact import SECOND_FIELD_OVER_UNLOADING_MOMENT, BoltedContact, JointSolution
 from jointfmu_tools.fem.geometry import Assembly, BoxSection
-from jointfmu_tools.studies.published.reference import ROLES, read_points
+from jointfmu_tools.studies.published.reference import POINT_ROLES, read_points
 from numpy.typing import NDArray
 from oracles import box_specimen as box
 
@@ -72,7 +72,7 @@ def print_meshes(assembly: Assembly) -> None:
     for name, one in (("two equal bodies", assembly), ("two different bodies", other)):
         start, cpu = time.perf_counter(), time.process_time()
         joint = BoltedContact.from_assembly(one)
-        solution = joint.solve(interface_law(one), PRELOAD)
+        solution = joint.solve_equilibrium(interface_law(one), PRELOAD)
         steps = solution.contact_solution.newton_steps
         seconds, cpu = time.perf_counter() - start, time.process_time() - cpu
         memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
@@ -130,10 +130,10 @@ def changed_boxes(assembly: Assembly) -> Iterator[tuple[str, Assembly]]:
 def print_lengths(assembly: Assembly) -> None:
     """Print the influence of the lengths on the peak pressure and on the pressure between bolts."""
     print("published: peak 7.98, between 0.62 MPa")
-    hard = BoltedContact.from_assembly(assembly).solve(HardContact(), PRELOAD)
+    hard = BoltedContact.from_assembly(assembly).solve_equilibrium(HardContact(), PRELOAD)
     print(f"{format_pressures(hard)}  default, hard contact", flush=True)
     for name, changed in changed_boxes(assembly):
-        solution = BoltedContact.from_assembly(changed).solve(interface_law(changed), PRELOAD)
+        solution = BoltedContact.from_assembly(changed).solve_equilibrium(interface_law(changed), PRELOAD)
         print(f"{format_pressures(solution)}  {name}", flush=True)
 
 
@@ -142,12 +142,12 @@ def print_preloads(assembly: Assembly) -> None:
     joint, curve = BoltedContact.from_assembly(assembly), interface_law(assembly)
     first: Any = None
     for force in (9e3, 15e3, 24e3):
-        solution = joint.solve(curve, force)
+        solution = joint.solve_equilibrium(curve, force)
         field = solution.contact_field
-        shape = field.pressure / (field.force / field.area.sum())
+        shape = field.nodal_pressure / (field.normal_force / field.nodal_area.sum())
         first = shape if first is None else first
-        change = np.sqrt(field.area @ (shape - first) ** 2 / (field.area @ first**2))
-        mean = field.force / field.area.sum()
+        change = np.sqrt(field.nodal_area @ (shape - first) ** 2 / (field.nodal_area @ first**2))
+        mean = field.normal_force / field.nodal_area.sum()
         print(
             f"{force / 1e3:g} kN: peak/mean {solution.peak_pressure / mean:.3f}, "
             f"{format_pressures(solution)} MPa, shape differs from 9 kN by {100 * change:.2f} % rms"
@@ -187,7 +187,7 @@ START = (0.327, 0.257, 0.0192, 0.052, 0.036)
 def published_mark(role: str, colour: str = "black") -> dict[str, object]:
     """Style and legend of a published number with a role."""
     shape = MARKERS.get(role, {"marker": "+"})
-    return {"linestyle": "none", "color": colour, "ms": 5, "label": f"published, {ROLES[role]}"} | shape
+    return {"linestyle": "none", "color": colour, "ms": 5, "label": f"published, {POINT_ROLES[role]}"} | shape
 
 
 def measured_frequencies() -> Array:
@@ -303,8 +303,12 @@ if __name__ == "__main__":
         },
         on_request=("identify", "search"),
         options={
-            "--plot": {"type": Path, "metavar": "FILE", "help": "draw f1 over the preload"},
-            "--fits": {"type": int, "default": 5, "help": "fits of each case of `search` (5)"},
-            "--seed": {"type": int, "default": 1, "help": "seed of `search` (1)"},
+            "--plot": {
+                "type": Path,
+                "metavar": "FILE",
+                "help": "picture to write of f1 over the preload (.png, .svg)",
+            },
+            "--fits": {"type": int, "default": 5, "help": "search: number of fits of each case (default: 5)"},
+            "--seed": {"type": int, "default": 1, "help": "search: seed of the random lengths (default: 1)"},
         },
     )

@@ -14,7 +14,7 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
-from common import heading, row, run_study
+from common import print_table_head, print_table_row, run_study
 from oracles import curve_measurements, drive_measurements, joint_measurements, robot_log, system_records
 from oracles.curve_measurements import errors
 
@@ -56,7 +56,7 @@ def fit_logs(make, options, seeds):
 
 def print_logs(options):
     """Print median errors and coverage of the intervals."""
-    heading("", "log", "parameter", "median error", "95 % interval holds it")
+    print_table_head("", "log", "parameter", "median error", "95 % interval holds it")
     cases = {name: (*case, options.seeds) for name, case in robot_log.CASES.items()}
     torque_constant = {"torque_constant": robot_log.CONSTANT}
     cases[WITHOUT_INERTIA] = robot_log.write_swing, torque_constant, -(-options.seeds // FEWER_SEEDS)
@@ -64,25 +64,32 @@ def print_logs(options):
         found, fit = fit_logs(*case)
         for label, (relative_errors, held) in found.items():
             median = f"{100.0 * np.median(np.abs(relative_errors)):.2g} %"
-            row(name, f"`{label}`", median, f"{sum(held)} of {len(held)}")
+            print_table_row(name, f"`{label}`", median, f"{sum(held)} of {len(held)}")
         print(f"<!-- {fit.facts} {fit.notes} -->", file=sys.stderr)
 
 
 def print_systems(options):
     """Print median errors and coverage of the intervals of system fits."""
-    heading("", "record", "parameter", "median error", "95 % interval holds it")
+    print_table_head("", "record", "parameter", "median error", "95 % interval holds it")
     with tempfile.TemporaryDirectory() as folder:
         for name, (_, truth) in system_records.CASES.items():
             fits = [system_records.fit_case(name, seed, Path(folder)) for seed in range(options.seeds)]
             for label, value in truth.items():
                 median = np.median([abs(fit.solution.values[label] / value - 1.0) for fit in fits])
                 held = sum(system_records.count_held(fit, truth)[label] for fit in fits)
-                row(name, f"`{label}`", f"{100.0 * median:.2g} %", f"{held} of {len(fits)}")
+                print_table_row(name, f"`{label}`", f"{100.0 * median:.2g} %", f"{held} of {len(fits)}")
 
 
 if __name__ == "__main__":
     run_study(
         __doc__,
         {"round-trips": print_round_trips, "logs": print_logs, "systems": print_systems},
-        options={"--seeds": {"type": int, "default": 100, "metavar": "N"}},
+        options={
+            "--seeds": {
+                "type": int,
+                "default": 100,
+                "metavar": "N",
+                "help": "number of random measurements of each case (default: 100)",
+            }
+        },
     )

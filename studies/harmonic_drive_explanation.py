@@ -22,15 +22,15 @@ from dataclasses import replace
 from importlib.resources import files
 
 import numpy as np
-from common import heading, print_table, row, run_study
+from common import print_table, print_table_head, print_table_row, run_study
 from jointfmu_tools.inputs.catalogue import CatalogueEntry
 from jointfmu_tools.joints.harmonic_drive import catalogue
 from jointfmu_tools.joints.harmonic_drive.efficiency import (
+    compute_hysteresis_loss,
+    compute_lost_motion,
     drives_with_friction,
-    friction_and_ratio,
-    hysteresis_loss,
-    lost_motion,
     make_test_rig,
+    ratio_and_friction_parameters,
 )
 from jointfmu_tools.joints.harmonic_drive.fit.drive import CatalogueRow
 from jointfmu_tools.joints.harmonic_drive.friction import CATALOGUE_MOTOR_SPEED
@@ -61,8 +61,8 @@ LINES = ("K1", "K2", "K3", "T1", "T2")
 def catalogue_drive(name):
     """Parameter file of a catalogue drive."""
     return NEW_JOINT_COMMAND.make_joint(
-        dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.options) | {"catalogue": name}
-    ).file
+        dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.command_options) | {"catalogue": name}
+    ).parameter_file
 
 
 def compare_drives():
@@ -72,24 +72,32 @@ def compare_drives():
     the catalogue the lost motion and the hysteresis loss [rad].
     """
     for item in catalogue.list_drives():
-        if "rated_torque" not in item.numbers:
+        if "rated_torque" not in item.known_numbers:
             continue
-        file, printed = catalogue_drive(item.name), item.numbers
+        file, printed = catalogue_drive(item.joint_name), item.known_numbers
         spring = HarmonicDriveSpring.tabulate(file.values)
-        row = CatalogueRow(**{n: printed[n].value for n in LINES}, rated=printed["rated_torque"].value)
-        torques = [printed[n].value for n in ("T1", "T2", "rated_torque", "peak_torque") if n in printed]
-        miss = [float(spring.curve.inverse(T) / row.wind_up(T)) - 1.0 for T in torques]
-        most = {"hysteresis_loss": printed["hysteresis_loss"].value}
+        catalogue_row = CatalogueRow(
+            **{n: printed[n].si_value for n in LINES}, rated_torque=printed["rated_torque"].si_value
+        )
+        torques = [printed[n].si_value for n in ("T1", "T2", "rated_torque", "peak_torque") if n in printed]
+        miss = [float(spring.curve.inverse(T) / catalogue_row.wind_up(T)) - 1.0 for T in torques]
+        most = {"hysteresis_loss": printed["hysteresis_loss"].si_value}
         opened = HarmonicDriveSpring.tabulate(file.with_values(most, "user", "limit").values)
-        yield item, miss, lost_motion(spring), lost_motion(opened), hysteresis_loss(opened)
+        yield (
+            item,
+            miss,
+            compute_lost_motion(spring),
+            compute_lost_motion(opened),
+            compute_hysteresis_loss(opened),
+        )
 
 
 def all_drives():
     """Print wind-up, hysteresis and lost motion of all drives."""
     found = list(compare_drives())
-    loops = [loop / item.numbers["hysteresis_loss"].value - 1.0 for item, *_, loop in found]
-    lost = [play / item.numbers["lost_motion"].value for item, _, play, _, _ in found]
-    held = [play / item.numbers["lost_motion"].value for item, _, _, play, _ in found]
+    loops = [loop / item.known_numbers["hysteresis_loss"].si_value - 1.0 for item, *_, loop in found]
+    lost = [play / item.known_numbers["lost_motion"].si_value for item, _, play, _, _ in found]
+    held = [play / item.known_numbers["lost_motion"].si_value for item, _, _, play, _ in found]
     size = f"{len(found)} drives"
     rows = [
         ("wind-up at T1, T2, rated and peak torque", size, "K1 to T2, set from it", "up to "
@@ -101,7 +109,7 @@ def all_drives():
          "arcmin"),
     ]  # fmt: skip
     other = [
-        lost_motion(HarmonicDriveSpring.tabulate(catalogue_drive(name).values)) / limit
+        compute_lost_motion(HarmonicDriveSpring.tabulate(catalogue_drive(name).values)) / limit
         for name, limit in other_maker()
     ]
     text = f"{min(other):.2f} to {max(other):.2f} of it"
@@ -118,23 +126,23 @@ def other_maker():
 
 def single_drives():
     """Drives with published friction: default parameters, and parameters without the published efficiency."""
-    rows, both = [], [(item, catalogue_drive(item.name)) for item in drives_with_friction()]
+    rows, both = [], [(item, catalogue_drive(item.joint_name)) for item in drives_with_friction()]
     for item, file in both:
-        n, drive = item.numbers, make_test_rig(MODEL, file)
-        back, rated = n["back_driving_torque"].value, n["rated_torque"].value
+        n, drive = item.known_numbers, make_test_rig(MODEL, file)
+        back, rated = n["back_driving_torque"].si_value, n["rated_torque"].si_value
         found = drive.back_driving_torque(10.0 * back)
-        guess = abs(n["ratio"].value) * n["starting_torque"].value
+        guess = abs(n["ratio"].si_value) * n["starting_torque"].si_value
         cells = [
-            item.name,
+            item.joint_name,
             f"{1e3 * drive.starting_torque():.0f}",
             f"{1e3 * drive.motor_torque(CATALOGUE_MOTOR_SPEED, 0.0):.0f}",
         ]
         cells += [f"{back:.3g}", f"{found:.3g}", f"{guess:.3g}"]
-        if n["efficiency"].origin == "catalogue":
-            other = CatalogueEntry(item.name, {k: v for k, v in n.items() if k != "efficiency"})
-            freed = file.with_values(friction_and_ratio(other), "user", "without efficiency")
+        if n["efficiency"].value_origin == "catalogue":
+            other = CatalogueEntry(item.joint_name, {k: v for k, v in n.items() if k != "efficiency"})
+            freed = file.with_values(ratio_and_friction_parameters(other), "user", "without efficiency")
             free = file.with_values({"load_loss": 0.0}, "user", "guess")
-            values = [n["efficiency"].value, drive.efficiency(CATALOGUE_MOTOR_SPEED, rated)]
+            values = [n["efficiency"].si_value, drive.efficiency(CATALOGUE_MOTOR_SPEED, rated)]
             values += [
                 make_test_rig(MODEL, f).efficiency(CATALOGUE_MOTOR_SPEED, rated) for f in (freed, free)
             ]
@@ -165,9 +173,9 @@ def published_points(drive, column):
     path = files("jointfmu_models") / "reference" / "harmonic_drive_catalogue_efficiency.csv"
     rows = csv.DictReader(path.read_text(encoding="utf-8").splitlines())
     return {
-        (float(row["rpm"] or 0.0), float(row["share"])): float(row[column])
-        for row in rows
-        if row["drive"] == drive and row[column]
+        (float(test_row["rpm"] or 0.0), float(test_row["share"])): float(test_row[column])
+        for test_row in rows
+        if test_row["drive"] == drive and test_row[column]
     }
 
 
@@ -255,7 +263,8 @@ def scaling():
         unit, digits = ("[mN m]", 0) if "torque" in quantity else ("[1]", 3)
         size = 1e3 if digits == 0 else 1.0
         numbers = [
-            f"{size * x:.{digits}f}" for x in (printed, found.value, found.interval_low, found.interval_high)
+            f"{size * x:.{digits}f}"
+            for x in (printed, found.central_value, found.interval_low, found.interval_high)
         ]
         mark = "" if found.interval_low <= printed <= found.interval_high else ", outside"
         rows.append((name, f"{quantity} {unit}", *numbers[:2], f"{numbers[2]} to {numbers[3]}{mark}"))
@@ -342,18 +351,20 @@ def heat():
     speeds = (10.0, 50.0, 200.0, 1000.0)
     for title, friction in (("all friction", FRICTION), ("Stribeck friction alone", STRIBECK_ALONE)):
         exact = {speed: friction_heat(REFERENCE_STEPS, speed, friction) for speed in speeds}
-        heading(
+        print_table_head(
             f"E_loss of a swinging motor, error over the work through the drive: {title}",
             "steps of two periods",
             *(f"amplitude {speed:g} rad/s" for speed in speeds),
         )
         for steps in (50, 100, 200, 400, 1000):
             found = (friction_heat(steps, speed, friction)[0] - exact[speed][0] for speed in speeds)
-            row(steps, *(f"{e / exact[s][1]:+.2%}" for e, s in zip(found, speeds, strict=True)))
-    heading("load_loss under an oscillating load: work that the balance misses", "steps per period", "error")
+            print_table_row(steps, *(f"{e / exact[s][1]:+.2%}" for e, s in zip(found, speeds, strict=True)))
+    print_table_head(
+        "load_loss under an oscillating load: work that the balance misses", "steps per period", "error"
+    )
     for steps in (4, 8, 16, 32):
         errors = (missing_work(steps, phase) for phase in np.linspace(0.0, np.pi, 6, endpoint=False))
-        row(steps, f"{max(map(abs, errors)):.2%}")
+        print_table_row(steps, f"{max(map(abs, errors)):.2%}")
 
 
 def missing_work(steps_per_period, phase):

@@ -27,7 +27,7 @@ from oracles.elastic_ring.forms import (
 )
 from oracles.elastic_ring.ring import Ring
 
-from jointfmu.joints.harmonic_drive.law import pair_stiffness, peak_pressure
+from jointfmu.joints.harmonic_drive.law import contact_pair_stiffness, peak_pressure
 from jointfmu.parameters import load_default
 from jointfmu.progress import track_progress
 
@@ -87,7 +87,7 @@ def fields():
         row(f"     {T:5.1f}", one.pressure.max(), 0.5 * np.angle(turned), nodes)
     print("default  T  peak MPa  load kN  K_TS of the paper's figures")
     for T in (0.0, *TORQUES):
-        peak, pair = peak_pressure(DRIVE, T)[0], pair_stiffness(DRIVE, T)[0] / DRIVE.drive_scale
+        peak, pair = peak_pressure(DRIVE, T)[0], contact_pair_stiffness(DRIVE, T)[0] / DRIVE.drive_scale
         load = DRIVE.mean_over_peak * peak * DRIVE.A_0
         print(f"     {T:5.1f} {peak / 1e6:9.2f} {load / 1e3:8.3f} {pair:9.1f}")
 
@@ -250,5 +250,5 @@ if __name__ == "__main__":
             "picture": draw_field,
         },
         on_request=("picture",),
-        options={"--plot": {"metavar": "FILE", "help": "picture of the field, .png or .svg"}},
+        options={"--plot": {"metavar": "FILE", "help": "picture to write of the field (.png, .svg)"}},
     )

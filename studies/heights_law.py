@@ -6,15 +6,15 @@ The constants were fixed on surfaces with odd seeds. The tables have even seeds;
 from functools import cache
 
 import numpy as np
-from common import heading, row
-from jointfmu_tools.inputs.drawing.tables import find_row
+from common import print_table_head, print_table_row
+from jointfmu_tools.inputs.drawing.tables import find_table_row
 from jointfmu_tools.inputs.surfaces import bearing_curve
 from jointfmu_tools.inputs.surfaces.bearing_curve import BearingCurve, HeightSample
 from oracles.boundary_element import press, slope
 from oracles.interface_laws import mean_measured_stiffness
 from oracles.machined_surfaces import FEW_HILLS, KINDS, sample_periodic, standard
 from oracles.measured_joints import SLOPE
-from oracles.roughness_law import MEASURED, joints_with_roughness
+from oracles.roughness_law import MEASURED_PRESSURES, joints_with_roughness
 
 from jointfmu.contact.roughness import predicted_stiffness
 from jointfmu.contact.surface import ElasticConstants, contact_modulus
@@ -28,7 +28,7 @@ FITTED, PROVED = (1, 3), (0, 2)
 """Seeds of the fit, and of the proof."""
 FACTORS = (2.0, 3.0, 4.0, 5.0, 6.0)
 LIMITS = (0.45, 0.48, 0.5, 0.55)
-"""Constants tried on the odd seeds: SECTION_AREA_FACTOR, GAUSSIAN_DECAY_LIMIT."""
+"""Constants tried on the odd seeds: SECTION_AREA_FACTOR, GAUSSIAN_DECAY_LENGTH_OVER_RMS_HEIGHT."""
 
 
 @cache
@@ -40,7 +40,7 @@ def solved(kind, seed, points, scale=1):
     contacts = press(z, slope(z) * np.array(LOADS if scale == 1 else LIGHT_LOADS))
     sample = sample_periodic(z)
     p, k = np.array([[c.p, c.stiffness] for c in contacts]).T
-    return BearingCurve.of_sample(sample), sample.moment(3), p, k
+    return BearingCurve.from_height_sample(sample), sample.standardized_moment(3), p, k
 
 
 def ratios(kind, seeds, points=POINTS, scale=1, gaussian=False):
@@ -48,7 +48,7 @@ def ratios(kind, seeds, points=POINTS, scale=1, gaussian=False):
     rows = []
     for seed in seeds:
         curve, _, p, k = solved(kind, seed, points, scale)
-        rows.append((predicted_stiffness(p, 1.0) if gaussian else curve.stiffness(p, 1.0)) / k)
+        rows.append((predicted_stiffness(p, 1.0) if gaussian else curve.normal_stiffness(p, 1.0)) / k)
     return np.array(rows)
 
 
@@ -56,14 +56,14 @@ def print_table(title, kinds, seeds, points=POINTS, scale=1):
     """Print the law of heights, and p/(0.45 h), over boundary elements; return the ratios of the law."""
     loads = LOADS if scale == 1 else LIGHT_LOADS
     names = ("surface", "skewness", *(f"{load:g}" for load in loads), *(f"p/(0.45 h): {x:g}" for x in loads))
-    heading(f"{title}: law over boundary elements at p/(E* h')", *names)
+    print_table_head(f"{title}: law over boundary elements at p/(E* h')", *names)
     found = []
     for kind in track_progress(kinds, "surfaces"):
         law = ratios(kind, seeds, points, scale)
         plain = ratios(kind, seeds, points, scale, gaussian=True).mean(axis=0)
         skewness = np.mean([solved(kind, seed, points, scale)[1] for seed in seeds])
         cells = [f"{r.mean():.2f} ({r.min():.2f} to {r.max():.2f})" for r in law.T]
-        row(kind, f"{skewness:.1f}", *cells, *(f"{one:.2f}" for one in plain))
+        print_table_row(kind, f"{skewness:.1f}", *cells, *(f"{one:.2f}" for one in plain))
         found.append(law)
     law = np.array(found)
     if len(kinds) > 2:
@@ -85,16 +85,19 @@ def print_proof():
 
 def print_fit():
     """Print the rms of ln(law over boundary elements) on the odd seeds, for values of both constants."""
-    heading("rms of ln(law over boundary elements), odd seeds", "SECTION_AREA_FACTOR", *LIMITS)
-    kept = bearing_curve.SECTION_AREA_FACTOR, bearing_curve.GAUSSIAN_DECAY_LIMIT
+    print_table_head("rms of ln(law over boundary elements), odd seeds", "SECTION_AREA_FACTOR", *LIMITS)
+    kept = bearing_curve.SECTION_AREA_FACTOR, bearing_curve.GAUSSIAN_DECAY_LENGTH_OVER_RMS_HEIGHT
     for factor in FACTORS:
         cells = []
         for limit in LIMITS:
-            bearing_curve.SECTION_AREA_FACTOR, bearing_curve.GAUSSIAN_DECAY_LIMIT = factor, limit
+            bearing_curve.SECTION_AREA_FACTOR, bearing_curve.GAUSSIAN_DECAY_LENGTH_OVER_RMS_HEIGHT = (
+                factor,
+                limit,
+            )
             log = np.log(np.concatenate([ratios(kind, FITTED) for kind in KINDS]))
             cells.append(f"{np.sqrt(np.mean(log**2)):.3f}")
-        row(factor, *cells)
-    bearing_curve.SECTION_AREA_FACTOR, bearing_curve.GAUSSIAN_DECAY_LIMIT = kept
+        print_table_row(factor, *cells)
+    bearing_curve.SECTION_AREA_FACTOR, bearing_curve.GAUSSIAN_DECAY_LENGTH_OVER_RMS_HEIGHT = kept
 
 
 def skewed_heights(Rq, skewness, seed):
@@ -108,19 +111,19 @@ def skewed_heights(Rq, skewness, seed):
 
 def print_joints():
     """Print the law of heights over measured joints, with the skewness of their finish."""
-    pressures = [f"{p / 1e6:g} MPa" for p in MEASURED]
-    heading("law of heights over measured stiffness", "joint", "skewness of each side", *pressures)
+    pressures = [f"{p / 1e6:g} MPa" for p in MEASURED_PRESSURES]
+    print_table_head("law of heights over measured stiffness", "joint", "skewness of each side", *pressures)
     for joint in joints_with_roughness():
         finish = next(name for name in ("ground", "scraped", "lapped") if name in joint["id"])
-        numbers = find_row("finishes", finish).numbers
+        numbers = find_table_row("finishes", finish).sourced_numbers
         body = ElasticConstants(E=joint["E"], nu=joint["nu"])
-        middle = mean_measured_stiffness(joint, MEASURED)
-        skews = dict.fromkeys([0.0, *(numbers[f"skewness{end}"].value for end in ("_high", "", "_low"))])
+        middle = mean_measured_stiffness(joint, MEASURED_PRESSURES)
+        skews = dict.fromkeys([0.0, *(numbers[f"skewness{end}"].si_value for end in ("_high", "", "_low"))])
         for skewness in skews:
             sides = [skewed_heights(joint["Rq"], skewness, seed) for seed in (1, 2)]
-            curve = BearingCurve.of_sample(bearing_curve.add_surfaces(*sides))
-            k = curve.stiffness(MEASURED, contact_modulus(body, body))
-            row(joint["id"], f"{skewness:g}", *(f"{ratio:.2f}" for ratio in k / middle))
+            curve = BearingCurve.from_height_sample(bearing_curve.add_independent_surfaces(*sides))
+            k = curve.normal_stiffness(MEASURED_PRESSURES, contact_modulus(body, body))
+            print_table_row(joint["id"], f"{skewness:g}", *(f"{ratio:.2f}" for ratio in k / middle))
 
 
 def print_heights():

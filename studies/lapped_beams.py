@@ -8,7 +8,7 @@ import sys
 from dataclasses import replace
 
 import numpy as np
-from common import IMAGES, heading, row
+from common import IMAGES, print_table_head, print_table_row
 from jointfmu_tools.common import plots
 from oracles.lap_beam.brake_reuss import (
     AMPLITUDES,
@@ -67,22 +67,26 @@ def masing_curves(joint, turns=CYCLE_AMPLITUDES):
 def print_linear_frequencies(structure, found):
     """Print the frequencies of small motions; returns the first frequency of the glued lap [Hz]."""
     count = structure.interface.quadrature_area.size
-    heading("Linear frequencies [Hz]", "interface", "f1", "f2", "f3")
-    row("solid bar (Timoshenko)", f"{solid_bar_frequency(structure.beam):.1f}", "", "")
+    print_table_head("Linear frequencies [Hz]", "interface", "f1", "f2", "f3")
+    print_table_row("solid bar (Timoshenko)", f"{solid_bar_frequency(structure.beam):.1f}", "", "")
     glued = spectrum(structure, np.full((count, 3), GLUED_STIFFNESS))[0]
-    row("lap in one piece", *(f"{f:.1f}" for f in glued))
+    print_table_row("lap in one piece", *(f"{f:.1f}" for f in glued))
     for name, joint in found.items():
-        row(name, *(f"{f:.1f}" for f in joint.beam.frequencies))
+        print_table_row(name, *(f"{f:.1f}" for f in joint.beam.frequencies))
     return float(glued[0])
 
 
 def print_over_amplitude(title, curve, simple, joint):
     """Print frequency and damping over the amplitude, by full cycles and by Masing's rules."""
-    heading(title, "q [m kg^0.5]", "tip [um]", "acceleration [m/s2]", "f [Hz]", "zeta [%]", "by Masing [%]")
+    print_table_head(
+        title, "q [m kg^0.5]", "tip [um]", "acceleration [m/s2]", "f [Hz]", "zeta [%]", "by Masing [%]"
+    )
     for q, f, zeta, other in zip(curve.q, curve.frequency, curve.damping, simple.damping, strict=True):
         tip = q * joint.beam.tip
         peak = f"{tip * (2.0 * np.pi * f) ** 2:.3g}"
-        row(f"{q:.2e}", f"{1e6 * tip:.3g}", peak, f"{f:.2f}", f"{100 * zeta:.3f}", f"{100 * other:.3f}")
+        print_table_row(
+            f"{q:.2e}", f"{1e6 * tip:.3g}", peak, f"{f:.2f}", f"{100 * zeta:.3f}", f"{100 * other:.3f}"
+        )
 
 
 def print_beside_published(ours, name, glued):
@@ -94,7 +98,9 @@ def print_beside_published(ours, name, glued):
     viscous, theirs = data()["published"]["viscous"], published(name)
     names = [f"{one}: {what}" for one in ours for what in ("f", "miss [%]", "zeta [%]", "ratio")]
     guesses = ("one piece: miss [%]", "constant: miss [%]", "ratio")
-    heading(f"Beside the published curve of {name} surfaces", "q", "f [Hz]", "zeta [%]", *names, *guesses)
+    print_table_head(
+        f"Beside the published curve of {name} surfaces", "q", "f [Hz]", "zeta [%]", *names, *guesses
+    )
     for q, f, zeta in zip(theirs.q, theirs.frequency, theirs.damping, strict=True):
         cells = []
         for curve in ours.values():
@@ -103,33 +109,35 @@ def print_beside_published(ours, name, glued):
             cells += [f"{found:.1f}", f"{100 * (found / f - 1):+.1f}"]
             cells += [f"{100 * whole:.2f}", f"{whole / zeta:.2f}"]
         cells += [f"{100 * (one / f - 1):+.1f}" for one in (glued, theirs.frequency[0])]
-        row(f"{q:.2g}", f"{f:.1f}", f"{100 * zeta:.2f}", *cells, f"{viscous / zeta:.2f}")
+        print_table_row(f"{q:.2g}", f"{f:.1f}", f"{100 * zeta:.2f}", *cells, f"{viscous / zeta:.2f}")
 
 
 def print_meshes():
     """Print the first frequency of small motions on other meshes, with the law `roughness`."""
     law, preload = laws()["roughness"], data()["beam"]["preload"]
-    heading("Meshes", "near holes [mm]", "far [mm]", "layers", "patches", "f1 [Hz]")
+    print_table_head("Meshes", "near holes [mm]", "far [mm]", "layers", "patches", "f1 [Hz]")
     for near, far, layers in ((4e-3, 6e-3, 2), (2.6e-3, 3.6e-3, 2), (2.6e-3, 3.6e-3, 3), (2.6e-3, 3.6e-3, 4)):
         structure = Structure.of(beam(), Fineness(near=near, far=far, layers=layers))
         normal = structure.solve_preload(tabulate_approach(law), preload).stiffness
         springs = np.outer(normal, [law.shear_stiffness_ratio(), law.shear_stiffness_ratio(), 1.0])
         found = spectrum(structure, springs, 1)[0][0]
-        row(f"{1e3 * near:g}", f"{1e3 * far:g}", layers, normal.size, f"{found:.2f}")
+        print_table_row(f"{1e3 * near:g}", f"{1e3 * far:g}", layers, normal.size, f"{found:.2f}")
 
 
 def print_scanned_form():
     """Print results with the scanned form of the lap and published friction, next to the published curve."""
     found = reduced_joints(Structure.of(beam(), Fineness()), form())
     friction, small = data()["published"]["friction"], published("curved").frequency[0]
-    heading("With the scanned form", "interface", "f1", "miss [%]", "share of the lap that carries 90 %")
+    print_table_head(
+        "With the scanned form", "interface", "f1", "miss [%]", "share of the lap that carries 90 %"
+    )
     for name, joint in found.items():
         pressure = joint.sliders.pressure_curve.derivatives(joint.beam.approach, 0)[0]
         order = np.argsort(-pressure)
         force, area = (np.cumsum(each[order]) for each in (joint.beam.area * pressure, joint.beam.area))
         carries = area[np.searchsorted(force, 0.9 * force[-1])] / area[-1]
         f = joint.beam.frequency
-        row(name, f"{f:.1f}", f"{100 * (f / small - 1):+.2f}", f"{carries:.2f}")
+        print_table_row(name, f"{f:.1f}", f"{100 * (f / small - 1):+.2f}", f"{carries:.2f}")
     curves_ = {
         name: masing_curves(with_friction(joint, friction), slice(None))[1] for name, joint in found.items()
     }
@@ -139,7 +147,7 @@ def print_scanned_form():
 def print_plane_faces(images=False):
     """Print predictions with plane faces, next to the published curves."""
     structure = Structure.of(beam(), Fineness())
-    mass = sum(body.mass.sum() for body in structure.bodies) * 2.0 / 3.0
+    mass = sum(body.mass_matrix.sum() for body in structure.bodies) * 2.0 / 3.0
     nodes = sum(body.unknown_count for body in structure.bodies) // 3
     print(
         f"{mass:.3f} kg, {nodes} nodes and {structure.interface.quadrature_area.size} patches in half "
@@ -155,10 +163,10 @@ def print_plane_faces(images=False):
     same, simple = curves(theirs)
     print_over_amplitude("With the published contact law and friction", same, simple, theirs)
     others = {friction: masing_curves(with_friction(ours, friction))[1] for friction in OTHER_COEFFICIENTS}
-    heading("Other friction, law roughness, by Masing's rules: f [Hz], zeta [%]", "q", *others)
+    print_table_head("Other friction, law roughness, by Masing's rules: f [Hz], zeta [%]", "q", *others)
     for q in AMPLITUDES[CYCLE_AMPLITUDES]:
         pairs = (curve.at(q) for curve in others.values())
-        row(f"{q:.2e}", *(f"{f:.2f}, {100 * zeta:.3f}" for f, zeta in pairs))
+        print_table_row(f"{q:.2e}", *(f"{f:.2f}, {100 * zeta:.3f}" for f, zeta in pairs))
     both = {"predicted": prediction, "published law and friction": same}
     for name in ("flat", "curved"):
         print_beside_published(both, name, glued)
@@ -254,10 +262,10 @@ def print_measured_beam():
         "width of the band",
         "solid bar, no loss",
     )
-    heading("", "", *columns)
+    print_table_head("", "", *columns)
     for name, fact, *band, guess in zip(names, facts, low, middle, high, guesses, strict=True):
         scale = 100.0 if "%" in name else 1.0
         cells = [f"{scale * value:.4g}" for value in (fact, *band)]
         width = f"{band[2] / band[0] - 1.0:.1%}" if "Hz" in name else f"a factor of {band[2] / band[0]:.1f}"
         inside = "yes" if band[0] <= fact <= band[2] else "no"
-        row(name, *cells, inside, width, f"{scale * guess:.4g}")
+        print_table_row(name, *cells, inside, width, f"{scale * guess:.4g}")

@@ -16,8 +16,8 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from common import heading, row, run_study
-from jointfmu_tools.joints.bolted_joint.modelica import combine_nodes
+from common import print_table_head, print_table_row, run_study
+from jointfmu_tools.joints.bolted_joint.modelica import combine_nodes_to_spring
 from scipy.integrate import solve_ivp
 from scipy.interpolate import BPoly
 
@@ -26,7 +26,7 @@ from jointfmu.joints.harmonic_drive.drive import kinematic_error
 from jointfmu.joints.harmonic_drive.friction import SLIDER_LIMIT_SHARES, friction_limits, viscous_torque
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring, transmitted_torque, wind_up
 from jointfmu.joints.harmonic_drive.spring import SpringState as Spring
-from jointfmu.mechanics.sliders import UNIFORM_DEVIATION
+from jointfmu.mechanics.sliders import UNIFORM_DISTRIBUTION_DEVIATION
 from jointfmu.parameters import load_default
 
 CHANGED, BENT, STILL = 0.02, 0.2, 1e-4
@@ -140,9 +140,9 @@ class Bolted:
     """Equations of the bolted joint component; states: s, v, with history also slider forces (2, n)."""
 
     def __init__(self, kept):
-        spring = BoltedJointSpring.for_interface_nodes(load_default("bolted_joint").values)
-        found = combine_nodes(spring, 9e3, 0.0)
-        rows, self.kept, self.tight = found.force_table.rows, kept, found.preload_contact_force
+        spring = BoltedJointSpring.from_interface_nodes(load_default("bolted_joint").values)
+        found = combine_nodes_to_spring(spring, 9e3, 0.0)
+        rows, self.kept, self.tight = found.force_table.table_rows, kept, found.preload_contact_force
         self.load = BPoly.from_derivatives(rows[:, 0], rows[:, 1:4])
         self.curve = [self.load, self.load.derivative(), self.load.derivative(2)]
         self.shear, self.mu, self.heights = (
@@ -168,8 +168,8 @@ class Bolted:
         S = np.where(on, np.maximum(np.minimum(stiff, k[1:]) - k[:-1], 0.0), 0.0)
         grow = np.where(on & ~far, bend, 0.0)
         first = np.where(on, np.minimum(self.tight + load, g[1:]) - g[:-1] - k[:-1] * inside, 0.0)
-        apart = np.minimum(S * UNIFORM_DEVIATION * inside, np.maximum(first, 0.0))
-        widen = np.where(on & ~far, np.minimum(UNIFORM_DEVIATION * (S + grow * inside), S), 0.0)
+        apart = np.minimum(S * UNIFORM_DISTRIBUTION_DEVIATION * inside, np.maximum(first, 0.0))
+        widen = np.where(on & ~far, np.minimum(UNIFORM_DISTRIBUTION_DEVIATION * (S + grow * inside), S), 0.0)
         N = np.maximum(first, 0.0) + S * np.maximum(c - h[1:], 0.0)
         half = 0.5 * self.shear * np.array([S, S]), 0.5 * self.mu * np.array([N - apart, N + apart])
         rates = 0.5 * self.shear * np.array([grow, grow]), 0.5 * self.mu * np.array([S - widen, S + widen])
@@ -249,22 +249,22 @@ NAMES = "steps", "right-hand sides", "Jacobians", "states", "events"
 
 def print_drive():
     """Print steps, evaluations and events for a motor and a link with the equations of the drive."""
-    heading("Motor and link on the component's equations, BDF", "drive", *NAMES)
+    print_table_head("Motor and link on the component's equations, BDF", "drive", *NAMES)
     for friction in (False, True):
         for turns in (False, True):
             for tolerance in (1e-6, 1e-8):
                 losses = "hysteresis and friction" if friction else "hysteresis"
                 form = "from the last turn" if turns else "as states"
-                row(f"{losses}, {tolerance:g}, {form}", *Drive(friction, turns).run(tolerance))
+                print_table_row(f"{losses}, {tolerance:g}, {form}", *Drive(friction, turns).run(tolerance))
 
 
 def print_bolted_joint():
     """Print steps, evaluations and events for a mass on the equations of the bolted joint."""
-    heading("A mass on a bolted joint, BDF", "friction", *NAMES)
+    print_table_head("A mass on a bolted joint, BDF", "friction", *NAMES)
     cases = ((False, 1e-6, 4e-4), (True, 1e-6, 4e-4), (True, 1e-6, 2e-2), (True, 1e-8, 2e-2))
     for kept, tolerance, stop in cases:
         form = "from the last turn" if kept else "as states"
-        row(f"{stop * 1e3:g} ms, {tolerance:g}, {form}", *Bolted(kept).run(tolerance, stop))
+        print_table_row(f"{stop * 1e3:g} ms, {tolerance:g}, {form}", *Bolted(kept).run(tolerance, stop))
 
 
 if __name__ == "__main__":

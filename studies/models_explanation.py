@@ -16,10 +16,10 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
-from common import heading, row, run_study
+from common import print_table_head, print_table_row, run_study
 from fmpy.fmi1 import FMICallException
 from jointfmu_fmu_src.native.build import build_native_fmu
-from jointfmu_tools.run.host import Instance, open_instance, unpack_fmu
+from jointfmu_tools.run.host import FmuInstance, open_instance, unpack_fmu
 from numpy.typing import NDArray
 from oracles.joint_elements import (
     AXES,
@@ -48,10 +48,10 @@ plate_joint = cache(PlateJoint.of)
 
 def print_stiffness(_: argparse.Namespace) -> None:
     """Print the stiffness of the reduced joint over the stiffness of finite elements."""
-    heading("", "attached", *AXES)
+    print_table_head("", "attached", *AXES)
     for attached in ATTACHMENTS:
         found, expected = stiffnesses(plate_joint(attached))
-        row(f"`{attached}`", *(f"{x:.3f}" for x in found / expected))
+        print_table_row(f"`{attached}`", *(f"{x:.3f}" for x in found / expected))
 
 
 def first_loading(joint: PlateJoint, count: int) -> Array:
@@ -71,10 +71,10 @@ def first_loading(joint: PlateJoint, count: int) -> Array:
 
 def print_first_loading(options: argparse.Namespace) -> None:
     """Print the largest deviation of the force on first loading."""
-    heading("", "attached", "along x", "along y", "along z", "about y", "about z")
+    print_table_head("", "attached", "along x", "along y", "along z", "about y", "about z")
     for attached in ATTACHMENTS[:2]:
         worst = np.max(np.abs(first_loading(plate_joint(attached), options.cells)), axis=1)
-        row(f"`{attached}`", *(f"{x:.1%}" for x in worst))
+        print_table_row(f"`{attached}`", *(f"{x:.1%}" for x in worst))
 
 
 def print_poles(_: argparse.Namespace) -> None:
@@ -91,7 +91,7 @@ def print_closed_paths(options: argparse.Namespace) -> None:
     with tempfile.TemporaryDirectory() as folder:
         path = build_native_fmu("BoltedJoint", joint.file, Path(folder), "3")
         print(f"FMU {path.stat().st_size / 1e3:.0f} kB; {options.paths} closed paths")
-        heading("", "of the load", "steps", "refused", "least work over heat")
+        print_table_head("", "of the load", "steps", "refused", "least work over heat")
         with unpack_fmu(path) as (unpacked, description):
             for scale, steps in PATHS:
                 rng, refused, least = np.random.default_rng(1), 0, np.inf
@@ -107,10 +107,10 @@ def print_closed_paths(options: argparse.Namespace) -> None:
                             continue
                     work = -0.5 * np.sum((force[1:, :6] + force[:-1, :6]) * np.diff(motions, axis=0))
                     least = min(least, work / force[-1, 6])
-                row(f"{scale:g}", steps, refused, f"{least:.3f}" if steps >= MIN_STEPS else "")
+                print_table_row(f"{scale:g}", steps, refused, f"{least:.3f}" if steps >= MIN_STEPS else "")
 
 
-def follow_in_fmu(fmu: Instance, motions: Array, preload: float) -> list[list[float]]:
+def follow_in_fmu(fmu: FmuInstance, motions: Array, preload: float) -> list[list[float]]:
     """Forces, moments and heat of the FMU along motions (n, 6)."""
     fmu.enter_initialization()
     fmu.set_values({"preload": preload})
@@ -137,7 +137,11 @@ if __name__ == "__main__":
             "closed-paths": print_closed_paths,
         },
         options={
-            "--cells": {"type": int, "default": 300, "help": "cells of the contact (300)"},
-            "--paths": {"type": int, "default": 1000, "help": "closed paths of each kind (1000)"},
+            "--cells": {"type": int, "default": 300, "help": "number of cells of the contact (default: 300)"},
+            "--paths": {
+                "type": int,
+                "default": 1000,
+                "help": "number of closed paths of each kind (default: 1000)",
+            },
         },
     )

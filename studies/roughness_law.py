@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
-from common import format_mean_and_deviation, heading, row
+from common import format_mean_and_deviation, print_table_head, print_table_row
 from oracles import interface_laws as compare
 from oracles import roughness_law as cases
 from oracles.measured_joints import LONGEST, joint_law, level, measured
@@ -41,24 +41,28 @@ def print_elastic():
     for roll_off, loads in cases.LOADS.items():
         band = f"waves up to {wave_name(roll_off)}, at y (x)"
         title = f"law over boundary elements, mean (least to largest), {band}"
-        heading(title, "H", *(f"{y:g} ({y * roll_off**2:.2g})" for y in loads), "beyond 30 %")
+        print_table_head(title, "H", *(f"{y:g} ({y * roll_off**2:.2g})" for y in loads), "beyond 30 %")
         for H in cases.HURST:
             one = found[H, roll_off]
             ratio, use = one["law"] / one["k"], cases.in_valid_range(roll_off, one["area"])
             mean = one["law"].mean(axis=0) / one["k"].mean(axis=0)
             cells = [f"{m:.2f} ({r.min():.2f} to {r.max():.2f})" for m, r in zip(mean, ratio.T, strict=True)]
             missed = int((np.abs(ratio - 1.0) > 0.3)[use].sum())
-            row(H, *cells, f"{missed} of {use.sum()}")
+            print_table_row(H, *cells, f"{missed} of {use.sum()}")
             beyond, all_cases = beyond + missed, all_cases + int(use.sum())
     print(f"\nbeyond 30 %: {beyond} of {all_cases} single cases with x >= {cases.MIN_LOAD:g}")
-    heading("the same with the tail of the heights, mean, waves up to side/16", "H", *cases.LOADS[16])
+    print_table_head(
+        "the same with the tail of the heights, mean, waves up to side/16", "H", *cases.LOADS[16]
+    )
     for H in cases.HURST:
         one = found[H, 16]
-        row(H, *two_digits(one["tail"].mean(axis=0) / one["k"].mean(axis=0)))
-    heading("exponent d ln k/d ln p", "H", "longest wave", "boundary elements", "law", "difference of means")
+        print_table_row(H, *two_digits(one["tail"].mean(axis=0) / one["k"].mean(axis=0)))
+    print_table_head(
+        "exponent d ln k/d ln p", "H", "longest wave", "boundary elements", "law", "difference of means"
+    )
     for (H, roll_off), one in found.items():
         k, law = cases.exponents(one, roll_off)
-        row(
+        print_table_row(
             H,
             wave_name(roll_off),
             format_mean_and_deviation(k),
@@ -70,11 +74,11 @@ def print_elastic():
 def print_plastic():
     """Print the law over boundary elements with a hardness."""
     names = ("longest wave", "H over E* h'", "p/H", "K_loading", "K_N", "A_r")
-    heading("law over boundary elements with a hardness, H = 0.3 and 0.8", *names)
+    print_table_head("law over boundary elements with a hardness, H = 0.3 and 0.8", *names)
     for roll_off in track_progress((1, 4), "hardness"):
         for hardness, load in ((0.5, 0.03), (0.5, 0.1), (0.15, 0.03), (0.15, 0.1), (0.05, 0.1), (0.05, 0.3)):
             both = [cases.plastic(H, roll_off, hardness, load, seeds=cases.SEEDS[16]) for H in (0.3, 0.8)]
-            row(
+            print_table_row(
                 wave_name(roll_off),
                 hardness,
                 load,
@@ -85,56 +89,64 @@ def print_plastic():
 def print_joints():
     """Print the law over measured joints, and the other three laws over measured joints."""
     pressures = [f"{p / 1e6:g} MPa" for p in cases.MEASURED_PRESSURES]
-    heading("law over measured stiffness", "joint", "h [µm]", "law", *pressures)
+    print_table_head("law over measured stiffness", "joint", "h [µm]", "law", *pressures)
     for joint in cases.joints_with_roughness():
         law = joint_law(joint)
         middle = compare.mean_measured_stiffness(joint, cases.MEASURED_PRESSURES)
         height = f"{law.h * 1e6:.2f}"
-        row(
+        print_table_row(
             joint["id"],
             height,
             "p/(0.45 h)",
             *two_digits(cases.MEASURED_PRESSURES / (law.gamma * law.h) / middle),
         )
-        row(joint["id"], height, "roughness", *two_digits(level(law, cases.MEASURED_PRESSURES) / middle))
+        print_table_row(
+            joint["id"], height, "roughness", *two_digits(level(law, cases.MEASURED_PRESSURES) / middle)
+        )
     zhao, hu, yu = (case.law for case in compare.cases().values())
     others = {
         f"zhao2018 {area} {spot}": replace(zhao, critical_area=area, spot_stiffness=spot)
         for area, spot in CHOICES
         if spot == "hertz" or area == "continuity"
     }
-    heading("the same of the other laws, whatever the finish", "joint", "law", *pressures)
+    print_table_head("the same of the other laws, whatever the finish", "joint", "law", *pressures)
     for joint in measured()["normal"]:
         middle = compare.mean_measured_stiffness(joint, cases.MEASURED_PRESSURES)
         for text, law in {**others, "hu2023": hu, "yu2022": yu}.items():
             k = stiffness_curve(law, cases.MEASURED_PRESSURES)[0]
-            row(joint["id"], text, *(f"{one:.2g}" for one in k / middle))
+            print_table_row(joint["id"], text, *(f"{one:.2g}" for one in k / middle))
 
 
 def print_second_scale():
     """Print the law with longer waves, and with a second scale in series, over measured joints."""
     pressures = [f"{p / 1e6:g} MPa" for p in cases.MEASURED_PRESSURES]
-    heading("law over measured stiffness, longer waves and a second scale", "joint", "law", *pressures)
+    print_table_head(
+        "law over measured stiffness, longer waves and a second scale", "joint", "law", *pressures
+    )
     for joint in cases.joints_with_roughness():
         law = joint_law(joint)
         middle = compare.mean_measured_stiffness(joint, cases.MEASURED_PRESSURES)
         for wave in WAVES:
             k = level(replace(law, longest_wave=wave), cases.MEASURED_PRESSURES)
-            row(joint["id"], f"longest wave {wave * 1e3:g} mm", *two_digits(k / middle))
-        row(
+            print_table_row(joint["id"], f"longest wave {wave * 1e3:g} mm", *two_digits(k / middle))
+        print_table_row(
             joint["id"],
             "with the tail of the heights",
             *two_digits(cases.stiffness_with_tail(law, cases.MEASURED_PRESSURES) / middle),
         )
         for h in HEIGHTS:
             k = cases.two_scale_stiffness(law, cases.MEASURED_PRESSURES, h, WAVES[-1])
-            row(joint["id"], f"in series {h * 1e6:g} µm over 40 mm", *two_digits(k / middle))
-    heading("best two scales in series, 0.1 to 2 MPa", "joint", "h [µm]", "h_w [µm]", *pressures, "exponent")
+            print_table_row(joint["id"], f"in series {h * 1e6:g} µm over 40 mm", *two_digits(k / middle))
+    print_table_head(
+        "best two scales in series, 0.1 to 2 MPa", "joint", "h [µm]", "h_w [µm]", *pressures, "exponent"
+    )
     for joint in cases.joints_with_roughness():
         middle = compare.mean_measured_stiffness(joint, cases.MEASURED_PRESSURES)
         h, k = fit_second_scale(joint, middle)
         power = compare.exponent(cases.MEASURED_PRESSURES[FITTED_PRESSURES], k[FITTED_PRESSURES])
-        row(joint["id"], *(f"{one * 1e6:.3g}" for one in h), *two_digits(k / middle), f"{power:.2f}")
+        print_table_row(
+            joint["id"], *(f"{one * 1e6:.3g}" for one in h), *two_digits(k / middle), f"{power:.2f}"
+        )
 
 
 def fit_second_scale(joint, middle):
@@ -154,6 +166,6 @@ def fit_second_scale(joint, middle):
 def print_brake_reuss():
     """Print the law over the published contact law of the Brake-Reuss beam, for two longest waves."""
     published = measured("brake_reuss")
-    heading("law over published, Brake-Reuss beam", "longest wave [mm]", *cases.brake_reuss())
+    print_table_head("law over published, Brake-Reuss beam", "longest wave [mm]", *cases.brake_reuss())
     for wave in (LONGEST, cases.filtered_wave(published["filter_sigma"])):
-        row(f"{wave * 1e3:.3g}", *two_digits(cases.brake_reuss(longest_wave=wave).values()))
+        print_table_row(f"{wave * 1e3:.3g}", *two_digits(cases.brake_reuss(longest_wave=wave).values()))

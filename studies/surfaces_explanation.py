@@ -17,7 +17,7 @@ from jointfmu_tools.inputs import fractal
 from jointfmu_tools.inputs.surfaces import form, synthesis
 from jointfmu_tools.inputs.surfaces.form import remove_form
 from jointfmu_tools.inputs.surfaces.heights import ArealMap, Profile
-from jointfmu_tools.inputs.surfaces.identify import identify
+from jointfmu_tools.inputs.surfaces.identify import identify_surface
 from oracles import rough_surfaces
 
 DIMENSIONS = (1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8)
@@ -30,12 +30,12 @@ SHAPES = {"isotropic": 1000, "textured": 2048, "profile": 4096}
 
 def weierstrass_mandelbrot(shape, points, D, G, seed):
     """Heights of a Weierstrass-Mandelbrot surface whose profiles (textured: along x) have the dimension D."""
-    waves = synthesis.Waves(sample_length=1e-3, point_count=points, gamma=1.5)
+    waves = synthesis.FractalWaves(size=1e-3, points=points, gamma=1.5)
     if shape == "isotropic":
         return synthesis.synthesize_isotropic(waves, D + 1.0, G, 20, seed)
     if shape == "textured":
         square = synthesis.synthesize_textured(waves, (D, 3.0 - D), (G, G), seed)
-        return ArealMap(z=square.z[:64], dx=square.dx, dy=square.dy, name=square.name)
+        return ArealMap(z=square.z[:64], dx=square.dx, dy=square.dy, scan_name=square.scan_name)
     return synthesis.synthesize_profile(waves, D, G, seed)
 
 
@@ -50,23 +50,30 @@ def gaussian(points, D, G, rng, areal):
     share = 1.0 / (np.pi * f**2 * (n * dx) ** 2) if areal else 1.0 / (f * n * dx)
     noise = np.fft.rfftn(rng.standard_normal(shape))
     z = np.fft.irfftn(
-        noise * np.sqrt(0.5 * fractal.wave_power(f, H, G) * share * n**f.ndim), s=shape, axes=range(f.ndim)
+        noise * np.sqrt(0.5 * fractal.height_variance_density(f, H, G) * share * n**f.ndim),
+        s=shape,
+        axes=range(f.ndim),
     )
     if areal:
-        return ArealMap(z=z[:points, :points].copy(), dx=dx, dy=dx, name="Gaussian")
-    return Profile(z=z[:points].copy(), dx=dx, name="Gaussian")
+        return ArealMap(z=z[:points, :points].copy(), dx=dx, dy=dx, scan_name="Gaussian")
+    return Profile(z=z[:points].copy(), dx=dx, scan_name="Gaussian")
 
 
 def errors(heights, direction, D, G):
     """{method or "best": (error of D, D inside its interval, error of ln G, G inside)}; maps: G_s."""
-    found = identify([heights])
+    found = identify_surface([heights])
     results = {m: found.select_best_result(direction, m) for m in ("structure", "psd")} | {
         "best": found.select_best_result(direction)
     }
     row = {}
     for name, one in results.items():
-        d, g = one.profile.D, one.areal.G_s if direction == "areal" else one.profile.G
-        row[name] = (d.value - D, d.low <= D <= d.high, np.log(g.value / G), g.low <= G <= g.high)
+        d, g = one.profile_fractal.D, one.areal_fractal.G_s if direction == "areal" else one.profile_fractal.G
+        row[name] = (
+            d.estimated_value - D,
+            d.interval_low <= D <= d.interval_high,
+            np.log(g.estimated_value / G),
+            g.interval_low <= G <= g.interval_high,
+        )
     return row
 
 
@@ -118,7 +125,7 @@ def print_identification(options):
     start = perf_counter()
     heights = weierstrass_mandelbrot("isotropic", 1000, 1.5, 1e-9, 1)
     middle = perf_counter()
-    identify([heights])
+    identify_surface([heights])
     print(
         f"\na million points: made in {middle - start:.2f} s, identified in {perf_counter() - middle:.2f} s"
     )
@@ -135,11 +142,11 @@ def scan_ratios(heights, D, G):
     flat, H = remove_form(heights), 2.0 - D
     rows = []
     for share in SHARES:
-        longest = share * heights.lengths[0]
-        found = form.scan_roughness(flat, flat, longest)
+        longest = share * heights.side_lengths[0]
+        found = form.compute_scan_roughness(flat, flat, longest)
         h = rough_surfaces.rms_height(H, G, longest, 2.0 * heights.dx)
         slope = rough_surfaces.rms_slope(H, G, longest, found.shortest_wave)
-        rows.append((found.h / h, found.slope / slope))
+        rows.append((found.long_wave_rms_height / h, found.rms_slope / slope))
     return np.transpose(rows)
 
 
@@ -163,5 +170,11 @@ if __name__ == "__main__":
     run_study(
         __doc__,
         {"identification": print_identification, "scans": print_scans},
-        options={"--draws": {"type": int, "default": 100, "help": "Gaussian surfaces of each kind (100)"}},
+        options={
+            "--draws": {
+                "type": int,
+                "default": 100,
+                "help": "number of Gaussian surfaces of each kind (default: 100)",
+            }
+        },
     )

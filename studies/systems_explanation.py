@@ -26,12 +26,12 @@ from jointfmu_tools.api import drive, load
 from jointfmu_tools.exchange.robots import elastic, poses, robot_system
 from jointfmu_tools.joints.harmonic_drive.transmission import make_transmission
 from jointfmu_tools.pages.report.systems import wind_up_and_tip_error
-from jointfmu_tools.run.proof.manifest import RelatedFiles
+from jointfmu_tools.run.proof.manifest import RelatedFileReader
 from jointfmu_tools.run.proof.run import prove
 from jointfmu_tools.systems.cosimulation import simulate_arm
 from jointfmu_tools.systems.fit.compiled_system import CompiledSystem
 from jointfmu_tools.systems.fmu.assembly import assemble_system
-from jointfmu_tools.systems.fmu.build import build_system
+from jointfmu_tools.systems.fmu.build import build_system_fmus
 from jointfmu_tools.systems.system import load_system
 from scipy.interpolate import CubicSpline
 
@@ -63,11 +63,11 @@ def drift_in(folder: Path) -> None:
     """Build the arm with fixed motors in a folder, and print the drift of its energy without losses."""
     model, axes, files = read_axes()
     joints = {f"joint{i}": drive(size) for i, size in enumerate(SIZES, 1)}
-    pose = elastic.joint_positions(model, {"joint2": "0.7", "joint3": "0.8"})
+    pose = elastic.make_robot_pose(model, {"joint2": "0.7", "joint3": "0.8"})
     tip = model.body("flange").id
-    arm = robot_system.read_arm(model, axes, files, pose, PAYLOAD, tip, has_motor_angles=True)
+    arm = robot_system.read_arm(model, axes, files, pose, PAYLOAD, tip, has_prescribed_motor_motion=True)
     system = robot_system.make_robot_system(arm, "swing", "arm that swings", PAYLOAD)
-    (file,) = build_system(system, folder, ("2",), (fmpy.platform_tuple,))
+    (file,) = build_system_fmus(system, folder, ("2",), (fmpy.platform_tuple,))
     unzipped = fmpy.extract(str(file))
     described = fmpy.read_model_description(unzipped)
     names = {v.name for v in described.modelVariables}
@@ -115,9 +115,11 @@ def print_coupling() -> None:
     model, axes, _ = read_axes()
     pose = np.array([link.travel for link in load_system("six_axis_robot").arm.links])
     tip = model.body("flange").id
-    torques, _ = poses.compute_torques(model, axes, pose, PAYLOAD, tip)
-    inertias = np.diag(poses.compute_link_inertia(model, axes, pose, PAYLOAD, tip))
-    stiffness = np.array([axis.stiffness(t) for axis, t in zip(axes, torques.tolist(), strict=True)])
+    torques, _ = poses.compute_weight_torques(model, axes, pose, PAYLOAD, tip)
+    inertias = np.diag(poses.compute_link_mass_matrix(model, axes, pose, PAYLOAD, tip))
+    stiffness = np.array(
+        [axis.stiffness_at_torque(t) for axis, t in zip(axes, torques.tolist(), strict=True)]
+    )
     alone = np.sort(np.sqrt(stiffness / inertias)) / (2.0 * np.pi)
     coupled = poses.compute_frequencies(model, axes, pose, PAYLOAD, tip)
     for name, frequencies in (("each axis alone", alone), ("coupled", coupled)):
@@ -132,7 +134,7 @@ def print_coupling() -> None:
         ("one inertia per axis", dict(zip(angles, rows.T, strict=True))),
     ):
         _, wind_up, error = wind_up_and_tip_error(arm, found)
-        ringing = np.ptp(wind_up[results["time"] > arm.arm.start + arm.arm.duration], axis=0)
+        ringing = np.ptp(wind_up[results["time"] > arm.arm.motion_start + arm.arm.motion_duration], axis=0)
         print(f"{name}: error of the tip up to {1e3 * error.max():.3g} mm, at rest {1e3 * error[-1]:.3g} mm")
         print(
             f"  wind-up after the motion, peak to peak: {', '.join(f'{1e6 * x:.2g}' for x in ringing)} urad"
@@ -156,7 +158,7 @@ def print_random_states() -> None:
 
 def random_states_in(folder: Path) -> None:
     """Build the robot joint in a folder, and step it from random states."""
-    (file,) = build_system(
+    (file,) = build_system_fmus(
         assemble_system(load_system("robot_joint")), folder, ("2",), (fmpy.platform_tuple,)
     )
     unzipped = fmpy.extract(str(file))
@@ -214,13 +216,17 @@ def prove_long_system_in(folder: Path) -> None:
     for stop in LONG_DURATIONS:
         begin = time.perf_counter()
         column = replace(load_system("bolted_column"), stop_time=stop)
-        (file,) = build_system(assemble_system(column), folder, ("2",), (fmpy.platform_tuple,))
+        (file,) = build_system_fmus(assemble_system(column), folder, ("2",), (fmpy.platform_tuple,))
         taken = time.perf_counter() - begin
-        rows = [e.references.time for e in RelatedFiles(file).read_experiments() if e.references]
+        rows = [
+            e.reference_results.time
+            for e in RelatedFileReader(file).read_experiments()
+            if e.reference_results
+        ]
         found = prove(file)
         print(
             f"bolted_column over {stop:g} s: built in {taken:.0f} s, proved up to {rows[0][-1]:g} s, "
-            f"{', '.join(str(row.size) for row in rows)} rows, misses: {found.failures or 'none'}"
+            f"{', '.join(str(row.size) for row in rows)} rows, misses: {found.failure_messages or 'none'}"
         )
 
 

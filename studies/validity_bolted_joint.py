@@ -24,7 +24,7 @@ from pathlib import Path
 
 import lapped_beams
 import numpy as np
-from common import heading, row, run_study
+from common import print_table_head, print_table_row, run_study
 from jointfmu_tools.fem.reduction import elastic_bodies as reduction
 from jointfmu_tools.joints.bolted_joint.new.plate_finite_elements import set_elastic_bodies
 from numpy.typing import NDArray
@@ -109,7 +109,7 @@ class TensileJoint:
     def of(cls, joint: PlateJoint) -> "TensileJoint":
         """Load the joint step by step until it is open."""
         spring, preload, bolt = joint.spring, joint.preload, joint.file.values.bolt_stiffness
-        interface_alone = BoltedJointSpring.for_joint(joint.rigid.values)
+        interface_alone = BoltedJointSpring.from_joint(joint.rigid.values)
         stiff = [
             float(each.evaluate(preload, 0.0, (0.0,) * 3, (0.0,) * 3)["K_zz"])
             for each in (spring, interface_alone)
@@ -134,24 +134,24 @@ class TensileJoint:
 def print_vdi() -> None:
     """Print stiffnesses, load factor, additional bolt force and opening load, compared with VDI 2230."""
     columns = "bolt", "members", "VDI", "ratio", "load factor", "VDI", "added [kN]", "VDI", "opens at", "VDI"
-    heading("", "joint", *columns)
+    print_table_head("", "joint", *columns)
     for name, example in EXAMPLES.items():
         joint = PlateJoint.of("heads", FACES | example)
         found, hand = TensileJoint.of(joint), joint.members
         factor, added, opens = vdi_2230(found.bolt, hand, found.interface, found.load)
         cells = [f"{found.bolt:.4g}", f"{found.members:.4g}", f"{hand:.4g}", f"{found.members / hand:.3f}"]
         cells += [f"{found.factor:.3f}", f"{factor:.3f}", f"{found.added / 1e3:.2f}", f"{added / 1e3:.2f}"]
-        row(name, *cells, f"{found.opens:.3f}", f"{opens:.3f}")
+        print_table_row(name, *cells, f"{found.opens:.3f}", f"{opens:.3f}")
 
 
 def print_shear_lag() -> None:
     """Print the compliance of the lap over the closed form of shear lag."""
     columns = "length over that of shear lag", "modes over closed form", "finite elements over closed form"
-    heading("", *columns)
+    print_table_head("", *columns)
     lap = Lap.of()
     for reach in LENGTH_RATIOS:
         modes, elements, form = lap.compliances(reach)
-        row(f"{reach:g}", f"{modes / form:.4f}", f"{elements / form:.4f}")
+        print_table_row(f"{reach:g}", f"{modes / form:.4f}", f"{elements / form:.4f}")
 
 
 # friction
@@ -227,15 +227,15 @@ def compare_friction(name: str, variants: bool, refinement: float) -> None:
             if label == "as it is":
                 spring = joint.spring
             else:
-                rigid = BoltedJointSpring.for_joint(joint.rigid.values)
+                rigid = BoltedJointSpring.from_joint(joint.rigid.values)
                 made = reduction.reduce_bodies(joint.linear, rigid, joint.normal, joint.preload)
-                spring = BoltedJointSpring.for_joint(set_elastic_bodies(joint.rigid, made, attached).values)
+                spring = BoltedJointSpring.from_joint(set_elastic_bodies(joint.rigid, made, attached).values)
             found = {
                 key: follow_loads(spring, joint.preload, elements.motion, list(loads))
                 for key, loads in sequences.items()
             }
         element_count = elements.loops.beam.area.size
-        row(name, label, element_count, f"{slips:.2f}", *friction_deviations(full, found))
+        print_table_row(name, label, element_count, f"{slips:.2f}", *friction_deviations(full, found))
         firsts[label] = found["first"][0]
     for count in CELL_COUNTS if variants else ():
         states = joint_on_cells(joint, count)
@@ -249,7 +249,7 @@ def compare_friction(name: str, variants: bool, refinement: float) -> None:
 def print_friction(options: argparse.Namespace) -> None:
     """Print force and loss of the reduced joint compared with finite elements with friction."""
     cells = [f"{what} at {level:g}" for level in CYCLES for what in ("force", "loss")]
-    heading("", "joint", "reduction", "patches", "most force", "first way", *cells)
+    print_table_head("", "joint", "reduction", "patches", "most force", "first way", *cells)
     for name in options.joint or JOINTS:
         compare_friction(name, options.variants, options.refinement or 1.0)
 
@@ -257,11 +257,11 @@ def print_friction(options: argparse.Namespace) -> None:
 def print_points(options: argparse.Namespace) -> None:
     """Print force and loss of reduced joints with nine points in each element, compared with one point."""
     cells = [f"{what} at {level:g}" for level in CYCLES for what in ("force", "loss")]
-    heading("", "joint", "first way", *cells)
+    print_table_head("", "joint", "first way", *cells)
     for name in options.joint or JOINTS:
         attached, drawing, wrench = JOINTS[name]
         one, nine = (PlateJoint.of(attached, drawing, elements=each) for each in (True, False))
-        motion = np.linalg.solve(one.linear.stiffness, wrench) * one.load()[0]
+        motion = np.linalg.solve(one.linear.stiffness_matrix, wrench) * one.load()[0]
         found, expected = (
             {
                 key: follow_loads(joint.spring, joint.preload, motion, list(loads))
@@ -269,7 +269,7 @@ def print_points(options: argparse.Namespace) -> None:
             }
             for joint in (nine, one)
         )
-        row(name, *friction_deviations(expected, found))
+        print_table_row(name, *friction_deviations(expected, found))
 
 
 # calculix
@@ -288,7 +288,7 @@ def deck(lap: Lap, spring: BoltedJointSpring, motion: float, levels: Sequence[fl
     pressure = LAP_LOAD / lap.values.A_0
     normal = float(curve.derivatives(curve.inverse(pressure), 1)[1])
     first = joint.bodies[0]
-    starts = (0, first.basis.N)
+    starts = (0, first.finite_element_basis.N)
     for k, body in enumerate(joint.bodies):
         yield from body_lines(body, k + 1, starts[k], k * first.mesh.nelements, k * pressure / normal)
     yield "*SURFACE INTERACTION, NAME=LAW\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR"
@@ -305,7 +305,7 @@ def deck(lap: Lap, spring: BoltedJointSpring, motion: float, levels: Sequence[fl
     yield f"{STATIC_STEP}\n*CLOAD"
     for start, body, sign in zip(starts, joint.bodies, (1.0, -1.0), strict=True):
         face = body.mesh.facets_satisfying(lambda x: np.abs(x[2]) < 1e-9, boundaries_only=True)
-        load = sign * LAP_LOAD * body.uniform_load(face)[2::3]
+        load = sign * LAP_LOAD * body.distribute_unit_force(face)[2::3]
         yield from (f"{start + i + 1}, 3, {load[i]:.12g}" for i in np.flatnonzero(load))
     for number, level in enumerate((0.0, *levels)):
         yield f"{STATIC_STEP}\n*BOUNDARY" if number else "*BOUNDARY"
@@ -315,7 +315,7 @@ def deck(lap: Lap, spring: BoltedJointSpring, motion: float, levels: Sequence[fl
 def read_forces(printed: str) -> Array:
     """Total forces along x [N] of all steps."""
     rows = [line.split() for line in printed.splitlines()]
-    return np.array([float(row[0]) for row in rows if len(row) == 3])
+    return np.array([float(printed_row[0]) for printed_row in rows if len(printed_row) == 3])
 
 
 def loop_area(force: Array, shift: Array) -> float:
@@ -354,10 +354,10 @@ def print_calculix(options: argparse.Namespace) -> None:
     largest = np.max(np.abs(reference))
     loss = loop_area(reference, motion)
     print(f"largest motion {motion.max() * 1e6:.1f} um, force {largest:.0f} N, loss {loss:.4g} J")
-    heading("", "beside CalculiX", "force", "loss")
+    print_table_head("", "beside CalculiX", "force", "loss")
     for name, force in list(found.items())[1:]:
         deviation = np.max(np.abs(force - reference)) / largest
-        row(name, f"{deviation:.1%}", f"{loop_area(force, motion) / loss:.3f}")
+        print_table_row(name, f"{deviation:.1%}", f"{loop_area(force, motion) / loss:.3f}")
 
 
 if __name__ == "__main__":
@@ -379,10 +379,13 @@ if __name__ == "__main__":
             "--joint": {
                 "action": "append",
                 "choices": [*JOINTS],
-                "help": "joint of `friction` and `points` (all)",
+                "help": "friction, points: joint to compute (default: all)",
             },
             "--variants": {"action": "store_true", "help": "friction: also with more modes and patches"},
-            "--refinement": {"type": float, "help": "divides element sizes (friction: 1, calculix: 0.5)"},
+            "--refinement": {
+                "type": float,
+                "help": "factor that divides the element sizes (default: 1 for friction, 0.5 for calculix)",
+            },
             "--images": {"action": "store_true", "help": "draw the picture of brake-reuss into docs/images"},
         },
     )

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
-from common import IMAGES, heading, row, run_study
+from common import IMAGES, print_table_head, print_table_row, run_study
 from jointfmu_tools.common import plots
 from oracles import partial_slip_cases as cases
 from oracles.boundary_element import press, refined
@@ -96,15 +96,15 @@ def print_solver(pressure, approach):
 
 def print_spheres(which, found):
     """Print the errors for spheres against closed forms."""
-    heading("sphere over Cattaneo and Mindlin", "nu", "points", "load", "u, worst", *LOOP_COLUMNS)
+    print_table_head("sphere over Cattaneo and Mindlin", "nu", "points", "load", "u, worst", *LOOP_COLUMNS)
     for (nu, points), (load, shifts, areas) in zip(which, found, strict=True):
         worst = shifts[np.argmax(np.abs(shifts))]
-        row(nu, points, *(f"{100.0 * x:+.2f}" for x in (load, worst, *areas)))
+        print_table_row(nu, points, *(f"{100.0 * x:+.2f}" for x in (load, worst, *areas)))
 
 
 def print_grids(points, found):
     """Print the results for one surface on finer grids."""
-    heading(
+    print_table_head(
         "one surface, theory over boundary elements",
         "points",
         "real area",
@@ -113,31 +113,33 @@ def print_grids(points, found):
     )
     for count, one in zip(points, found, strict=True):
         ratios = (*one.theory, *one.loop_theory)
-        row(count, f"{one.area:.3f}", *(f"{100.0 * (ratio - 1.0):+.1f}" for ratio in ratios))
+        print_table_row(count, f"{one.area:.3f}", *(f"{100.0 * (ratio - 1.0):+.1f}" for ratio in ratios))
 
 
 def print_displacements(kinds):
     """Print displacements, theory over boundary elements, by Hurst exponent and longest wave."""
     title = "displacement, theory over boundary elements: mean (least to largest)"
-    heading(title, "longest wave", "H", "real area", *cases.FORCES)
+    print_table_head(title, "longest wave", "H", "real area", *cases.FORCES)
     for (H, roll_off), found in kinds.items():
         area = [one.area for one in found]
-        row(wave_name(roll_off), H, f"{min(area):.3f} to {max(area):.3f}", *extents(found, "theory"))
+        print_table_row(
+            wave_name(roll_off), H, f"{min(area):.3f} to {max(area):.3f}", *extents(found, "theory")
+        )
 
 
 def print_loops(kinds):
     """Print loop areas, theory over boundary elements, by Hurst exponent and longest wave."""
     title = "area of a loop, theory over boundary elements: mean (least to largest)"
-    heading(title, "longest wave", "H", *cases.AMPLITUDES)
+    print_table_head(title, "longest wave", "H", *cases.AMPLITUDES)
     for (H, roll_off), found in kinds.items():
-        row(wave_name(roll_off), H, *extents(found, "loop_theory"))
+        print_table_row(wave_name(roll_off), H, *extents(found, "loop_theory"))
 
 
 def print_summary(groups):
     """Print mean and largest deviation of groups of surfaces, and the number of deviations above 5 and 10
     percent."""
     names = ("theory, u", "beyond 5", "theory, loop", "beyond 10", "sliders, loop", "beyond 10")
-    heading(
+    print_table_head(
         "deviation, mean and largest", "surfaces", *names, "sphere, u", "sphere, loop", "across", "loops end"
     )
     for name, found in groups.items():
@@ -147,16 +149,18 @@ def print_summary(groups):
             cells += [mean_and_largest(values), f"{np.sum(values > bound)} of {values.size}"]
         cells += [mean_and_largest(deviations(found, quantity)) for quantity in ("sphere", "loop_sphere")]
         across = max(np.max(np.abs(one.across / one.force)) for one in found)
-        row(name, *cells, f"{100.0 * across:.1f}", f"{100.0 * max(one.open for one in found):.2f}")
+        print_table_row(
+            name, *cells, f"{100.0 * across:.1f}", f"{100.0 * max(one.open for one in found):.2f}"
+        )
 
 
 def print_exponents(groups):
     """Print the exponent of the loss over the displacement amplitude, at the two smallest amplitudes."""
-    heading("exponent of the loss, 0.1 to 0.2", "surfaces", "boundary elements", "theory", "sphere")
+    print_table_head("exponent of the loss, 0.1 to 0.2", "surfaces", "boundary elements", "theory", "sphere")
     for name, found in groups.items():
         shares = {"boundary elements": None, "theory": "loop_theory", "sphere": "loop_sphere"}
         values = [[loss_exponent(one, share) for one in found] for share in shares.values()]
-        row(name, *(f"{np.mean(one):.2f} ± {np.std(one, ddof=1):.2f}" for one in values))
+        print_table_row(name, *(f"{np.mean(one):.2f} ± {np.std(one, ddof=1):.2f}" for one in values))
 
 
 def loss_exponent(one, share=None):

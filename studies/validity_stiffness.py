@@ -21,7 +21,7 @@ from dataclasses import replace
 import heights_law
 import numpy as np
 import roughness_law
-from common import IMAGES, format_mean_and_deviation, heading, row, run_study
+from common import IMAGES, format_mean_and_deviation, print_table_head, print_table_row, run_study
 from jointfmu_tools.common import plots
 from oracles import interface_laws as compare
 from oracles.boundary_element import hertz, westergaard
@@ -52,20 +52,22 @@ MEASURED_PRESSURES = np.array([0.1e6, 1e6, 2.45e6, 9.8e6])
 def print_sizes():
     """Print laws over the nominal area, the rms height that corresponds to their stiffness, and the share of
     small spots."""
-    heading("k ~ A_0^x at a given pressure", "law", "x at the joint's A_0", "x of waves up to the side, -H/2")
+    print_table_head(
+        "k ~ A_0^x at a given pressure", "law", "x at the joint's A_0", "x of waves up to the side, -H/2"
+    )
     for name, case in compare.cases().items():
         areas = case.law.A_0 * np.array([0.5, 1.0, 2.0])
         p = case.pressures[3:4]
         k = [stiffness_curve(replace(case.law, A_0=a), p)[0][0] for a in areas]
-        row(name, f"{compare.exponent(areas, k):.2f}", f"{-0.5 * (3.0 - case.D):.2f}")
+        print_table_row(name, f"{compare.exponent(areas, k):.2f}", f"{-0.5 * (3.0 - case.D):.2f}")
     names = ("law", "p [MPa]", "p/(0.48 k) [um]", "h_rms, waves up to 1 mm", "up to the side")
-    heading("roughness height that the law's stiffness stands for", *names)
+    print_table_head("roughness height that the law's stiffness stands for", *names)
     for name, case in compare.cases().items():
         H, shortest = 3.0 - case.D, 1e-6
         heights = [rms_height(H, case.G, longest, shortest) * 1e6 for longest in (1e-3, case.sides[-1])]
         for p in case.pressures[[0, 3, 5]]:
             level = p / (GAMMA * stiffness_curve(case.law, np.array([p]))[0][0]) * 1e6
-            row(name, f"{p / 1e6:.3g}", f"{level:.2g}", *(f"{h:.2g}" for h in heights))
+            print_table_row(name, f"{p / 1e6:.3g}", f"{level:.2g}", *(f"{h:.2g}" for h in heights))
     zhao = compare.cases()["zhao2018"].law
     s, u = zhao.spot_distribution(), solve_largest_spot(zhao, 1e6)
     term = replace(s.regime_terms["normal"][0], upper_log_area=np.log(10.0))
@@ -79,7 +81,7 @@ def print_parameters():
     """Print K for several G, and for several D at a given height of the waves up to 1 mm, at each law's
     fourth pressure."""
     names = ("law", "y of K ~ G^y", "of 1/h_rms, 2 - D", "K at D + 0.1 over K at D - 0.1, same h_rms")
-    heading("K over the surface's parameters", *names)
+    print_table_head("K over the surface's parameters", *names)
     for name, case in compare.cases().items():
         p = case.pressures[3:4]
         band = (1e-3, 1e-6)
@@ -94,7 +96,7 @@ def print_parameters():
             G = (rms / rms_height(3.0 - D, 1.0, *band)) ** (1.0 / (D - 2.0))
             over_d.append(stiffness(D, G))
         y = compare.exponent((0.9, 1.1), over_g)
-        row(name, f"{y:.2f}", f"{2.0 - case.D:.2f}", f"{over_d[1] / over_d[0]:.2g}")
+        print_table_row(name, f"{y:.2f}", f"{2.0 - case.D:.2f}", f"{over_d[1] / over_d[0]:.2g}")
 
 
 def print_levels():
@@ -103,12 +105,14 @@ def print_levels():
     file = load_default("bolted_joint")
     h = combined_height(file.roughness)
     names = [f"{p / 1e6:g} MPa" for p in COMPARED_PRESSURES]
-    heading(f"K over p/(0.45 h), h = {1e6 * h:.3g} um", "law", *names, "K_T/K_N", "measured rows within 2")
+    print_table_head(
+        f"K over p/(0.45 h), h = {1e6 * h:.3g} um", "law", *names, "K_T/K_N", "measured rows within 2"
+    )
     laws = {f"{a} {s}": replace(file.values, critical_area=a, spot_stiffness=s) for a, s in CHOICES}
     for name, law in {**laws, "roughness": load_default("bolted_joint", "roughness").values}.items():
         state = evaluate_at_pressure(law, COMPARED_PRESSURES)
         k = state["K_N"] / law.A_0
-        row(
+        print_table_row(
             name,
             *(f"{ratio:.2g}" for ratio in k / predicted_stiffness(COMPARED_PRESSURES, h)),
             f"{state['K_T'][-1] / state['K_N'][-1]:.3f}",
@@ -131,20 +135,22 @@ def print_joints():
     pressures = [f"{p / 1e6:g} MPa" for p in MEASURED_PRESSURES]
     data = measured()
     for kind in ("normal", "tangential"):
-        heading(f"measured {kind} stiffness [N/m3]", "joint", *pressures, "exponent")
+        print_table_head(f"measured {kind} stiffness [N/m3]", "joint", *pressures, "exponent")
         for joint in data[kind]:
             low, high = compare.measured_stiffness(joint, MEASURED_PRESSURES)
             powers = sorted(1.0 - m for m in joint["m"]) if "m" in joint else joint["S"]
             cells = [f"{a:.2g} to {b:.2g}" for a, b in zip(low, high, strict=True)]
-            row(joint["id"], *cells, f"{powers[0]:.2f} to {powers[-1]:.2f}")
-    heading("tangential over normal", "joint", *pressures)
+            print_table_row(joint["id"], *cells, f"{powers[0]:.2f} to {powers[-1]:.2f}")
+    print_table_head("tangential over normal", "joint", *pressures)
     normal = {joint["id"]: joint for joint in data["normal"]}
     for joint in data["tangential"]:
         low, high = compare.measured_stiffness(joint, MEASURED_PRESSURES)
         least, most = compare.measured_stiffness(normal[joint["id"]], MEASURED_PRESSURES)
-        row(joint["id"], *(f"{a:.2f} to {b:.2f}" for a, b in zip(low / most, high / least, strict=True)))
+        print_table_row(
+            joint["id"], *(f"{a:.2f} to {b:.2f}" for a, b in zip(low / most, high / least, strict=True))
+        )
     names = ("exponent", "K_T/K_N", "eta_n at 1 MPa", "eta_t", "k at 1 MPa on (8 mm)2")
-    heading("laws: k [N/m3]", "law", *pressures, *names)
+    print_table_head("laws: k [N/m3]", "law", *pressures, *names)
     zhao, hu, yu = (case.law for case in compare.cases().values())
     choices = {f"zhao2018 {a} {s}": replace(zhao, critical_area=a, spot_stiffness=s) for a, s in CHOICES}
     for name, law in {**choices, "hu2023": hu, "yu2022": yu}.items():
@@ -154,12 +160,12 @@ def print_joints():
         k = state["K_N"] / law.A_0
         power = f"{compare.exponent(MEASURED_PRESSURES, k):.2f}" if np.all(k > 0.0) else "-"
         small = stiffness_curve(replace(law, A_0=64e-6), MEASURED_PRESSURES[1:2])[0][0]
-        row(name, *(f"{one:.2g}" for one in k), power, ratio, *eta, f"{small:.2g}")
+        print_table_row(name, *(f"{one:.2g}" for one in k), power, ratio, *eta, f"{small:.2g}")
     losses = [d / np.pi for one in data["statement"] for d in one.get("decrement", [])]
     print(f"\nloss factor of whole bolted structures: {min(losses):.3f} to {max(losses):.3f}")
-    heading("k = p/(0.48 h_rms) at 1 MPa", "h_rms [µm]", "k [N/m3]")
+    print_table_head("k = p/(0.48 h_rms) at 1 MPa", "h_rms [µm]", "k [N/m3]")
     for rms in (0.3, 1.0, 3.0, 10.0):
-        row(rms, f"{1e12 / (GAMMA * rms):.2g}")
+        print_table_row(rms, f"{1e12 / (GAMMA * rms):.2g}")
 
 
 # boundary elements
@@ -167,22 +173,24 @@ def print_joints():
 
 def print_verification():
     """Print boundary elements against closed forms, refinement, and the stiffness ratio K_T/K_N."""
-    heading(
+    print_table_head(
         "Hertz, Westergaard: relative errors", "points", "a²", "p_0", "approach", "k", "width", "gap", "k"
     )
     for points in (32, 64, 128, 256):
-        row(points, *(f"{e:+.1e}" for e in hertz(points)), *(f"{e:.1e}" for e in westergaard(points)))
-    heading(
+        print_table_row(
+            points, *(f"{e:+.1e}" for e in hertz(points)), *(f"{e:.1e}" for e in westergaard(points))
+        )
+    print_table_head(
         "One surface on finer grids",
         "spacings in the shortest wave",
         "alpha at p/(E* h'_rms) = 0.01, 0.03, 0.1",
         "kappa",
     )
     for factor, alpha, kappa in zip((2, 4, 8), *compare.resolution(), strict=True):
-        row(factor, *(", ".join(f"{x:.2f}" for x in one) for one in (alpha, kappa)))
-    heading("K_T/K_N of bonded contacts", "nu", "boundary elements", "2(1 - nu)/(2 - nu)")
+        print_table_row(factor, *(", ".join(f"{x:.2f}" for x in one) for one in (alpha, kappa)))
+    print_table_head("K_T/K_N of bonded contacts", "nu", "boundary elements", "2(1 - nu)/(2 - nu)")
     for nu in (0.0, 0.28, 0.45):
-        row(
+        print_table_row(
             nu,
             format_mean_and_deviation(compare.tangential_ratio(nu), "{:.3f}"),
             f"{2 * (1 - nu) / (2 - nu):.3f}",
@@ -197,28 +205,30 @@ def print_elastic():
         ("kappa", "kappa = (A_r/A_0) E* h'_rms/p"),
         ("isolated", "stiffness of the spots, each on its own, over k"),
     ):
-        heading(f"{title}, at p/(E* h'_rms)", "H", "longest wave", *LOADS)
+        print_table_head(f"{title}, at p/(E* h'_rms)", "H", "longest wave", *LOADS)
         for (H, r), one in found.items():
-            row(
+            print_table_row(
                 H,
                 "side" if r == 1 else f"side/{r}",
                 *(format_mean_and_deviation(column) for column in one[name].T),
             )
-    heading("exponent of k over p, first and last three loads", "H", "longest wave", "low", "high", "1/(1+H)")
+    print_table_head(
+        "exponent of k over p, first and last three loads", "H", "longest wave", "low", "high", "1/(1+H)"
+    )
     for (H, r), one in found.items():
         k = one["alpha"] * np.array(LOADS)
         ends = [[compare.exponent(LOADS[s], x[s]) for x in k] for s in (slice(3), slice(3, 6))]
-        row(
+        print_table_row(
             H,
             "side" if r == 1 else f"side/{r}",
             *(format_mean_and_deviation(e) for e in ends),
             f"{1 / (1 + H):.2f}",
         )
     loads = (0.0003, 0.001, 0.003, 0.01)
-    heading("alpha of many spots at light load, H = 0.58", "longest wave", *loads)
+    print_table_head("alpha of many spots at light load, H = 0.58", "longest wave", *loads)
     for part, finest in ((8, 8), (16, 4)):
         alpha = compare.elastic(0.58, part, loads, finest=finest)["alpha"]
-        row(f"side/{part}", *(format_mean_and_deviation(column) for column in alpha.T))
+        print_table_row(f"side/{part}", *(format_mean_and_deviation(column) for column in alpha.T))
     return found
 
 
@@ -241,9 +251,9 @@ def print_laws():
                 "law not elastic",
                 "p/(0.48 h_rms)",
             )
-            heading(title, "p [MPa]", *names)
+            print_table_head(title, "p [MPa]", *names)
             for i, p in enumerate(case.pressures):
-                row(
+                print_table_row(
                     f"{p / 1e6:.3g}",
                     *(format_mean_and_deviation(b[q][:, i]) for q in ("k", "loading")),
                     f"{law['k'][i]:.2g}",
@@ -269,12 +279,14 @@ def print_grids():
     case = compare.cases()["zhao2018"]
     case = replace(case, pressures=case.pressures[[0, -1]])
     names = ("side [mm]", "points", "spacings in the shortest wave", "0.5 MPa", "16 MPa", "A_r/A_0 at 16 MPa")
-    heading("k [N/m3] and real area, zhao2018", *names)
+    print_table_head("k [N/m3] and real area, zhao2018", *names)
     for side in case.sides:
         for points, finest in ((128, 8), (128, 4), (256, 16), (256, 8), (256, 4)):
             found = compare.boundary_element_results(case, side, range(2), points=points, finest=finest)
             k, area = found["k"].mean(axis=0), found["area"].mean(axis=0)
-            row(f"{side * 1e3:.3g}", points, finest, f"{k[0]:.2g}", f"{k[-1]:.2g}", f"{area[-1]:.2g}")
+            print_table_row(
+                f"{side * 1e3:.3g}", points, finest, f"{k[0]:.2g}", f"{k[-1]:.2g}", f"{area[-1]:.2g}"
+            )
     case = replace(case, pressures=np.array([1e6, 4e6, 16e6]))
     found, law = (
         compare.boundary_element_results(case, 1e-3, points=128)["k"],

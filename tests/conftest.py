@@ -27,7 +27,7 @@ from jointfmu_fmu_src.native.compiled.cache import (
     compiler_cache_folder,
 )
 from jointfmu_fmu_src.native.compiled.compiler import ZIG_TARGETS, compile_libraries
-from jointfmu_tools.run.host import Instance
+from jointfmu_tools.run.host import FmuInstance
 from surroundings import Enter
 
 from jointfmu.progress import STATUS_DELAY_ENVIRONMENT_VARIABLE
@@ -124,7 +124,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 def warnings_but_shape(printed: dict[str, Any]) -> dict[str, Any]:
     """JSON of `jointfmu new` without the warning that Ra alone does not give the height distribution."""
-    others = [line for line in printed["warnings"] if "alone does not tell the shape" not in line]
+    others = [line for line in printed["warnings"] if "alone does not state the height" not in line]
     return printed | {"warnings": others}
 
 
@@ -144,7 +144,7 @@ def refused_line(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:
     return err
 
 
-class Fmu(Instance):
+class Fmu(FmuInstance):
     """Instance of an FMU file with a clock, and access to its messages."""
 
     def __init__(self, path: Path, name: str = "test", exchange: bool = False, logging: bool = True) -> None:
@@ -197,16 +197,16 @@ class Fmu(Instance):
         with pytest.raises(FMICallException) as raised:
             call(*args)
         assert raised.value.status in self.error_statuses
-        errors = [m for m in self.messages[seen:] if m.status in (2, 3)]
+        errors = [m for m in self.messages[seen:] if m.fmi_status in (2, 3)]
         assert len(errors) == 1, self.messages[seen:]
-        assert errors[0].category == "logStatusError"
-        assert "\n" not in errors[0].text
-        return errors[0].text
+        assert errors[0].message_category == "logStatusError"
+        assert "\n" not in errors[0].message_text
+        return errors[0].message_text
 
     @property
     def warnings(self) -> list[str]:
         """Texts of all warnings so far."""
-        return [m.text for m in self.messages if m.status == 1]
+        return [m.message_text for m in self.messages if m.fmi_status == 1]
 
 
 @cache
@@ -272,7 +272,7 @@ def here_alone(versions: str = "23") -> Iterator[None]:
 
     from jointfmu import progress
 
-    places, read = compiled_models._candidate_paths, compiled_models.unpack_model
+    places, read = compiled_models._list_candidate_cache_paths, compiled_models.unpack_compiled_model
 
     def places_here(name: str) -> tuple[Path, ...]:
         *others, last = places(name)
@@ -288,13 +288,17 @@ def here_alone(versions: str = "23") -> Iterator[None]:
     def read_here(content: bytes) -> compiled_models.CompiledModel:
         part = read(content)
         return compiled_models.CompiledModel(
-            part.sources, {v: {platform_tuple: built[platform_tuple]} for v, built in part.libraries.items()}
+            part.source_texts,
+            {
+                v: {platform_tuple: built[platform_tuple]}
+                for v, built in part.libraries_by_fmi_version.items()
+            },
         )
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(compiled_models, "FMI_VERSIONS", (*versions,))
-        patch.setattr(compiled_models, "_candidate_paths", places_here)
-        patch.setattr(compiled_models, "unpack_model", read_here)
+        patch.setattr(compiled_models, "_list_candidate_cache_paths", places_here)
+        patch.setattr(compiled_models, "unpack_compiled_model", read_here)
         patch.setattr(compiled_models, "compile_libraries", libraries_here)
         patch.setattr(system, "compile_libraries", libraries_here)
         patch.setattr(progress._WorkerPool, "map", staticmethod(map))
@@ -331,10 +335,10 @@ def fine_elements(enter: Enter) -> None:
 def few_points(monkeypatch: pytest.MonkeyPatch) -> None:
     """Use few points for ramp and loops of an FMU's page, because a page of elastic plates takes 20 s."""
     from jointfmu_tools.pages.report import load_history
-    from jointfmu_tools.run.ramps.loops import CyclicPath
+    from jointfmu_tools.run.ramps.loops import CyclicInputPath
 
-    monkeypatch.setattr(load_history, "_RAMP_POINTS", 11)
-    monkeypatch.setattr(load_history, "_LOAD_CYCLE", CyclicPath(points=8))
+    monkeypatch.setattr(load_history, "_RAMP_POINT_COUNT", 11)
+    monkeypatch.setattr(load_history, "_LOAD_CYCLE", CyclicInputPath(points_per_cycle=8))
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -388,7 +392,7 @@ def solved_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
 
         def make(out: Path) -> None:
             out.mkdir()
-            (out / "found").write_bytes(pickle.dumps(tuple(compute_experiments(model, parameters))))
+            (out / "found").write_bytes(pickle.dumps(tuple(compute_reference_experiments(model, parameters))))
 
         name = f"experiments-{sha256(text.encode()).hexdigest()[:16]}"
         return pickle.loads((made_once(tmp_path_factory, name, make) / "found").read_bytes())
@@ -397,8 +401,8 @@ def solved_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
         patch.setattr(plate_finite_elements, "compute_joint", whole)
         for module in (joint, joint_parameters):
             patch.setattr(module, "reduce_patches", once("patches", module.reduce_patches))
-        compute_experiments = members.compute_experiments
-        patch.setattr(members, "compute_experiments", experiments_of)
+        compute_reference_experiments = members.compute_reference_experiments
+        patch.setattr(members, "compute_reference_experiments", experiments_of)
         yield
 
 

@@ -34,20 +34,20 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(attribute_name: str) -> Any:
     """Import a name of the public interface from `jointfmu_tools.api` on first access."""
-    if name not in __all__:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    if attribute_name not in __all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {attribute_name!r}")
     try:
         from jointfmu_tools import api
     except ModuleNotFoundError as error:
         if error.name != "jointfmu_tools":
             raise
         raise ImportError(
-            f"jointfmu.{name} needs the package jointfmu_tools, which is missing; "
+            f"jointfmu.{attribute_name} needs the package jointfmu_tools, which is missing; "
             "install both with: pip install jointfmu"
         ) from None
-    value = globals()[name] = getattr(api, name)
+    value = globals()[attribute_name] = getattr(api, attribute_name)
     return value
 
 

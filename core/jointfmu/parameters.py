@@ -6,7 +6,7 @@ entry per parameter,
     [surface]
     D = { value = 1.42, unit = "1", kind = "paper", source = "Zhao 2018, section 2" }
 
-`kind` is one of ORIGINS. The unit must be the SI unit that the code declares; nothing is converted.
+`kind` is one of VALUE_ORIGINS. The unit must be the SI unit that the code declares; nothing is converted.
 A section `[inputs]` of the same form gives start values of the joint's inputs; other inputs start at their
 default values. A section `[roughness]` states measured heights of the surfaces, see `contact.roughness`; a
 law with the rms height h as a parameter computes h from them. For a law without h the section is called
@@ -22,7 +22,7 @@ from typing import Any, TypeVar
 
 from .contact import roughness
 from .files.reading import read_bytes
-from .files.text import MAX_NAME_LENGTH, check_document, check_text, format_toml_string
+from .files.text import MAX_NAME_LENGTH, check_text, check_toml_texts, format_toml_string
 from .joints import KINDS
 from .quantity import (
     build_parameter_set,
@@ -38,7 +38,7 @@ EntryValue = TypeVar("EntryValue")
 
 SCHEMA_VERSION = 1
 """Version of the format of parameter files: their entry `schema`."""
-ORIGINS = (
+VALUE_ORIGINS = (
     *("paper", "standard", "catalogue", "measured", "derived", "estimate", "calibration"),
     *("default", "user"),
 )
@@ -46,11 +46,13 @@ ORIGINS = (
 computed from other values, an engineering estimate, fitted to points, a default, or set by the user."""
 ORIGIN_ALIASES = {"published": "paper"}
 """{former name of an origin: its name}."""
-_DEFAULT_SOURCE = "default choice"
+_DEFAULT_SOURCE_TEXT = "default choice"
 """Beginning of the source text of a value that is a default."""
-_TOO_NESTED_TEXT = "has brackets or tables inside each other deeper than any file of this package"
+_TOO_DEEP_NESTING_MESSAGE = (
+    "has too many brackets or tables inside each other; expected sections with entries"
+)
 """Error of a file whose tables are nested too deeply for the TOML parser."""
-_MAX_SHOWN_LENGTH = 60
+_MAX_SHOWN_VALUE_LENGTH = 60
 """Largest number of characters [1] of a wrong value in a message."""
 _NUMBERS_PER_LINE = 5
 """Numbers of a list per line of the file [1]."""
@@ -67,18 +69,18 @@ _ROUGHNESS_SECTION_PREFIX, _COMPARISON_SECTION_PREFIX = "roughness.", "compariso
 class ParameterFile:
     """Content of a parameter file: a parameter set with the origin and source of each value.
 
-    joint   : a key of joints.KINDS
+    joint   : name of the kind of joint, a key of joints.KINDS
     name    : name of the parameter set
     values  : the parameter set, an instance of a class in KINDS[joint].laws
-    origins : {structured name: one of ORIGINS}, with entries for `inputs.NAME`, `roughness.NAME` and
-        `comparison.NAME` too
-    sources : {structured name: text}, for the same names
+    origins : {structured name: one of VALUE_ORIGINS}, also for start values (`inputs.NAME`) and surface
+        heights (`roughness.NAME` if the law depends on them, else `comparison.NAME`)
+    sources : {structured name: text that states the source}, for the same names
     inputs  : {input: start value in its SI unit} of the inputs that the file states
-    roughness : {name: height [m]} of the surfaces that the file states, see `roughness.HEIGHT_FIELDS`
+    roughness : {name: roughness height [m]} that the file states: Ra1, Ra2, Rq1, Rq2 or h
     ranges  : {structured name: (smallest, largest value)} of the uncertain values, from the same source
-    values_by_name : {structured name: value} of `values`
+    values_by_name : {structured name: value} of `values`; a structured name is such as `surface.D`
 
-    Raises ValueError if the name or a source is not a text that `check_text` allows.
+    Raises ValueError if the name or a source is too long or has a control character.
     """
 
     joint: str
@@ -96,7 +98,8 @@ class ParameterFile:
         for name, text in self.sources.items():
             check_text(f"{name}: source", text)
         origins = {
-            name: _name_origin(kind, self.sources.get(name, "")) for name, kind in self.origins.items()
+            name: _convert_former_origin(kind, self.sources.get(name, ""))
+            for name, kind in self.origins.items()
         }
         object.__setattr__(self, "origins", origins)
         object.__setattr__(self, "values_by_name", flatten_parameters(self.values))
@@ -108,19 +111,21 @@ class ParameterFile:
 
     @property
     def heights_prefix(self) -> str:
-        """Prefix of the names of the surface heights: `roughness.` or `comparison.`."""
+        """Prefix of surface heights in the file: `roughness.` if the law uses them, else `comparison.`."""
         return _heights_prefix(type(self.values))
 
-    def describe_source(self, name: str) -> tuple[str, str]:
+    def describe_source(self, value_name: str) -> tuple[str, str]:
         """Origin and source of a value, by its structured name; a default if the file states none."""
-        return self.origins.get(name, "default"), self.sources.get(name, _DEFAULT_SOURCE)
+        return self.origins.get(value_name, "default"), self.sources.get(value_name, _DEFAULT_SOURCE_TEXT)
 
     def start_value(self, input_name: str) -> float:
         """Start value of an input in its SI unit: stated in the file, else the default of the joint."""
         variable = KINDS[self.joint].variables.get(input_name) if self.joint in KINDS else None
         return self.inputs.get(input_name, variable.start if variable else 0.0)
 
-    def with_values(self, new_values: Mapping[str, object], origin: str, source: str) -> "ParameterFile":
+    def with_values(
+        self, new_values: Mapping[str, object], value_origin: str, value_source: str
+    ) -> "ParameterFile":
         """Copy of the file with new values, {structured name: value}; names and intervals are checked.
 
         A new height h of the law removes the heights of the surfaces from which h was computed.
@@ -130,25 +135,27 @@ class ParameterFile:
         return replace(
             self,
             values=replace_values(self.values, new_values),
-            origins=_drop_entries(removed_names, self.origins) | dict.fromkeys(new_values, origin),
-            sources=_drop_entries(removed_names, self.sources) | dict.fromkeys(new_values, source),
+            origins=_drop_entries(removed_names, self.origins) | dict.fromkeys(new_values, value_origin),
+            sources=_drop_entries(removed_names, self.sources) | dict.fromkeys(new_values, value_source),
             roughness=_drop_entries(removed, self.roughness),
             ranges=_drop_entries(new_values, self.ranges),
         )
 
-    def with_roughness(self, heights: Mapping[str, float], origin: str, source: str) -> "ParameterFile":
+    def with_roughness(
+        self, surface_heights: Mapping[str, float], height_origin: str, height_source: str
+    ) -> "ParameterFile":
         """Copy of the file with new heights [m] of the surfaces, {name: height}.
 
         Earlier heights of the same side are removed. A law with the parameter h gets h computed from all
         heights. Raises ValueError as `roughness.check_heights` does.
         """
-        new_heights = roughness.check_heights(heights, self.heights_prefix)
+        new_heights = roughness.check_heights(surface_heights, self.heights_prefix)
         replaced = {other for name in new_heights for other in roughness.conflicting_heights(name)}
         replaced_names = {self.heights_prefix + name for name in replaced}
         new_names = [self.heights_prefix + name for name in new_heights]
         all_heights = _drop_entries(replaced, self.roughness) | new_heights
-        origins = _drop_entries(replaced_names, self.origins) | dict.fromkeys(new_names, origin)
-        sources = _drop_entries(replaced_names, self.sources) | dict.fromkeys(new_names, source)
+        origins = _drop_entries(replaced_names, self.origins) | dict.fromkeys(new_names, height_origin)
+        sources = _drop_entries(replaced_names, self.sources) | dict.fromkeys(new_names, height_source)
         law_height = {
             name: roughness.combined_height(all_heights)
             for name in self.values_by_name
@@ -165,17 +172,17 @@ class ParameterFile:
         )
 
 
-def _name_origin(origin: str, source: str) -> str:
-    """Convert an origin in a file of an earlier version to its current name, one of ORIGINS.
+def _convert_former_origin(value_origin: str, source_text: str) -> str:
+    """Convert the origin of a value in a file of an earlier version to its current name in VALUE_ORIGINS.
 
     `user` becomes `default` if the source says that the value is a default.
     """
-    if origin == "user" and source.startswith(_DEFAULT_SOURCE):
+    if value_origin == "user" and source_text.startswith(_DEFAULT_SOURCE_TEXT):
         return "default"
-    return ORIGIN_ALIASES.get(origin, origin)
+    return ORIGIN_ALIASES.get(value_origin, value_origin)
 
 
-def load_parameter_file(path: str | Path, joint_name: str | None = None) -> ParameterFile:
+def load_parameter_file(parameter_path: str | Path, joint_name: str | None = None) -> ParameterFile:
     """Read and check a parameter file.
 
     joint_name : kind of joint that the file must have; None: any
@@ -184,28 +191,28 @@ def load_parameter_file(path: str | Path, joint_name: str | None = None) -> Para
     or broken file, a file of another joint, an unknown or missing name, a wrong unit, a value of the wrong
     type or outside its interval, a value that contradicts another one; the same for start values of inputs.
     """
-    path = Path(path)
-    document = read_document(path, "a parameter file")
+    parameter_path = Path(parameter_path)
+    document = read_document(parameter_path, "a parameter file")
     stated = document.get("joint")
     if not isinstance(stated, str) or stated not in KINDS:
-        raise ValueError(f"{path}: joint = {stated!r}, allowed are {', '.join(KINDS)}")
+        raise ValueError(f"{parameter_path}: joint = {stated!r}, allowed are {', '.join(KINDS)}")
     if joint_name is not None and stated != joint_name:
-        raise ValueError(f"{path}: joint = {stated!r}, expected a parameter file of a {joint_name!r}")
+        raise ValueError(f"{parameter_path}: joint = {stated!r}, expected a file with joint = {joint_name!r}")
     laws = KINDS[stated].laws
     law = document.get("law", next(iter(laws)))
     if not isinstance(law, str) or law not in laws:
-        raise ValueError(f"{path}: law = {law!r}, allowed are {', '.join(laws)}")
+        raise ValueError(f"{parameter_path}: law = {law!r}, allowed are {', '.join(laws)}")
     body = {k: v for k, v in document.items() if k not in ("schema", "joint", "law", "name")}
     cls = laws[law]
     prefix = _heights_prefix(cls)
     if prefix == _COMPARISON_SECTION_PREFIX and _ROUGHNESS_SECTION_PREFIX[:-1] in body:
         raise ValueError(
-            f"{path}: [roughness] does not act on law = {law!r}; allowed are [roughness] with a law with a "
-            "height, and [comparison] for what the level is judged by"
+            f"{parameter_path}: [roughness] has no effect on law = {law!r}, which has no height h; rename "
+            "the section to [comparison]: its heights only serve to judge the stiffness"
         )
     declared = declared_entries(stated, cls)
     keys = ("value", "unit", "kind", "source", "range")
-    values, origins, sources = read_entries(path, declared, body, keys)
+    values, origins, sources = read_entries(parameter_path, declared, body, keys)
     input_values, surface_heights = _pop_section(values, _INPUTS_SECTION_PREFIX), _pop_section(values, prefix)
     try:
         inputs = _check_start_values(stated, input_values)
@@ -213,19 +220,28 @@ def load_parameter_file(path: str | Path, joint_name: str | None = None) -> Para
         of_law = _compute_law_height(declared, values, heights)
         parameters = build_parameter_set(cls, values | of_law)
     except ValueError as error:
-        raise ValueError(f"{path}: {error}") from None
+        raise ValueError(f"{parameter_path}: {error}") from None
     for text in KINDS[stated].find_contradictions(parameters):
-        raise ValueError(f"{path}: {text}")
-    name = str(document.get("name", path.stem))
+        raise ValueError(f"{parameter_path}: {text}")
+    name = str(document.get("name", parameter_path.stem))
     origins |= dict.fromkeys(of_law, "derived")
     sources |= dict.fromkeys(of_law, _format_height_source(prefix, heights, sources))
     return ParameterFile(
-        stated, name, parameters, origins, sources, inputs, heights, _read_ranges(path, declared, body)
+        stated,
+        name,
+        parameters,
+        origins,
+        sources,
+        inputs,
+        heights,
+        _read_ranges(parameter_path, declared, body),
     )
 
 
 def declared_entries(joint_name: str, cls: type) -> dict[str, Field[Any]]:
-    """{structured name: field} of all entries that a parameter file of a joint may have.
+    """Declared fields {structured name: field} of all entries that a parameter file of a joint may have.
+
+    These are parameters, start values of inputs and surface heights.
 
     cls : class of the parameter set
     """
@@ -239,28 +255,32 @@ def _drop_entries(
     return {name: value for name, value in values_by_name.items() if name not in removed_names}
 
 
-def _format_height_source(prefix: str, heights: Iterable[str], sources: Mapping[str, str]) -> str:
+def _format_height_source(
+    height_name_prefix: str, surface_heights: Iterable[str], height_sources: Mapping[str, str]
+) -> str:
     """Source text of a height h that was computed from the heights of the surfaces."""
-    names = [prefix + height for height in heights]
-    return f"from {', '.join(names)}: {'; '.join(dict.fromkeys(sources[name] for name in names))}"
+    names = [height_name_prefix + height for height in surface_heights]
+    return f"from {', '.join(names)}: {'; '.join(dict.fromkeys(height_sources[name] for name in names))}"
 
 
 def _compute_law_height(
-    declared_fields: Mapping[str, object], entry_values: Mapping[str, Any], heights: Mapping[str, float]
+    declared_fields: Mapping[str, object],
+    entry_values: Mapping[str, Any],
+    surface_heights: Mapping[str, float],
 ) -> dict[str, float]:
-    """Height h [m] of the law, {name: h}, from the heights of the surfaces; empty if the file states h.
+    """Combined rms height h [m] of a law, {structured name: h}, from the heights of the single surfaces.
 
-    Empty also for a law without the parameter h. Raises ValueError if the file states both and they differ
-    by more than RELATIVE_HEIGHT_TOLERANCE.
+    Empty if the file states h, or for a law without the parameter h. Raises ValueError if the file states
+    both and they differ by more than RELATIVE_HEIGHT_TOLERANCE.
     """
-    stated = roughness.combined_height(heights)
+    stated = roughness.combined_height(surface_heights)
     name = next((name for name in declared_fields if is_combined_height(name)), None)
     if stated is None or name is None:
         return {}
     if name not in entry_values:
         return {name: stated}
     if not abs(entry_values[name] / stated - 1.0) <= RELATIVE_HEIGHT_TOLERANCE:
-        makers = ", ".join(_ROUGHNESS_SECTION_PREFIX + height for height in heights)
+        makers = ", ".join(_ROUGHNESS_SECTION_PREFIX + height for height in surface_heights)
         raise ValueError(
             f"{name} = {entry_values[name]:g} m does not agree with {makers}, which give {stated:.4g} m: "
             f"state one of them, or both within {RELATIVE_HEIGHT_TOLERANCE:.1%}"
@@ -268,47 +288,51 @@ def _compute_law_height(
     return {}
 
 
-def read_document(path: Path, expected_content: str) -> dict[str, Any]:
-    """Read a TOML document with the schema of this package.
+def read_document(document_path: Path, expected_content: str) -> dict[str, Any]:
+    """Read a TOML document that has the entry `schema` with the version SCHEMA_VERSION of this package.
 
     expected_content : what the file should be, for the error
 
     Raises ValueError with one line if the file cannot be read, is not TOML or of another schema, or if a key
     or a text is too long or has control characters.
     """
-    content = read_bytes(path, expected_content)
+    content = read_bytes(document_path, expected_content)
     try:
         document = tomllib.loads(content.decode("utf-8-sig"))
     except UnicodeDecodeError:
-        raise ValueError(f"{path}: is not a text file; expected {expected_content} (TOML, UTF-8)") from None
+        raise ValueError(
+            f"{document_path}: is not a text file; expected {expected_content} (TOML, UTF-8)"
+        ) from None
     except tomllib.TOMLDecodeError as error:
-        raise ValueError(f"{path}: is not valid TOML ({error})") from None
+        raise ValueError(f"{document_path}: is not valid TOML ({error})") from None
     except RecursionError:
-        raise ValueError(f"{path}: {_TOO_NESTED_TEXT}") from None
+        raise ValueError(f"{document_path}: {_TOO_DEEP_NESTING_MESSAGE}") from None
     except ValueError:  # of int(): Python limits the digits
-        raise ValueError(f"{path}: has an integer of more digits than any number of this package") from None
+        raise ValueError(
+            f"{document_path}: has an integer of too many digits; expected numbers up to 1.8e308"
+        ) from None
     try:
-        check_document(document)
+        check_toml_texts(document)
     except RecursionError:
-        raise ValueError(f"{path}: {_TOO_NESTED_TEXT}") from None
+        raise ValueError(f"{document_path}: {_TOO_DEEP_NESTING_MESSAGE}") from None
     except ValueError as error:
-        raise ValueError(f"{path}: {error}") from None
+        raise ValueError(f"{document_path}: {error}") from None
     if type(document.get("schema")) is not int or document["schema"] != SCHEMA_VERSION:
-        stated = textwrap.shorten(repr(document.get("schema")), _MAX_SHOWN_LENGTH, placeholder="...")
-        raise ValueError(f"{path}: schema = {stated}, allowed is {SCHEMA_VERSION}")
+        stated = textwrap.shorten(repr(document.get("schema")), _MAX_SHOWN_VALUE_LENGTH, placeholder="...")
+        raise ValueError(f"{document_path}: schema = {stated}, expected the line schema = {SCHEMA_VERSION}")
     return document
 
 
 def read_entries(
-    path: Path,
+    parameter_path: Path,
     declared_fields: Mapping[str, Field[Any]],
-    sections: Mapping[str, object],
+    toml_sections: Mapping[str, object],
     allowed_keys: tuple[str, ...] = ("value", "unit", "kind", "source"),
 ) -> tuple[dict[str, Any], dict[str, str], dict[str, str]]:
-    """Values, origins and sources of the entries of a parameter file, each by structured name.
+    """Read values, origins and sources of the entries of a parameter file: three {structured name: ...}.
 
     declared_fields : {structured name: field}; the unit of each entry is checked against its field
-    sections        : nested sections and entries of the document
+    toml_sections   : nested sections and entries of the document
     allowed_keys    : keys that an entry may have
 
     Raises ValueError, one line, for an entry that is not a table, or has an unknown key, a wrong unit, an
@@ -317,73 +341,80 @@ def read_entries(
     values: dict[str, Any] = {}
     origins: dict[str, str] = {}
     sources: dict[str, str] = {}
-    for name, entry in list_entries(sections):
+    for name, entry in list_entries(toml_sections):
         if not isinstance(entry, Mapping):
-            raise ValueError(f"{path}: {name} = {entry!r}, expected a table {{ value, unit, kind, source }}")
+            raise ValueError(
+                f"{parameter_path}: {name} = {entry!r}, expected a table {{ value, unit, kind, source }}"
+            )
         if unknown := set(entry) - set(allowed_keys):
             raise ValueError(
-                f"{path}: {name} has an unknown key {sorted(unknown)[0]!r}, allowed are "
+                f"{parameter_path}: {name} has an unknown key {sorted(unknown)[0]!r}, allowed are "
                 f"{', '.join(allowed_keys)}"
             )
         if name in declared_fields:
             unit = declared_fields[name].metadata.get("unit")
             if entry.get("unit") != unit:
-                raise ValueError(f"{path}: {name}: unit {entry.get('unit')!r}, expected {unit!r}")
-        if entry.get("kind") not in (*ORIGINS, *ORIGIN_ALIASES):
+                raise ValueError(f"{parameter_path}: {name}: unit {entry.get('unit')!r}, expected {unit!r}")
+        if entry.get("kind") not in (*VALUE_ORIGINS, *ORIGIN_ALIASES):
             raise ValueError(
-                f"{path}: {name}: kind = {entry.get('kind')!r}, allowed are {', '.join(ORIGINS)}"
+                f"{parameter_path}: {name}: kind = {entry.get('kind')!r}, allowed are "
+                f"{', '.join(VALUE_ORIGINS)}"
             )
         source = entry.get("source")
         if not isinstance(source, str) or not source.strip():
-            raise ValueError(f"{path}: {name}: source = {source!r}, state where the value comes from")
+            raise ValueError(
+                f"{parameter_path}: {name}: source = {source!r}, state where the value comes from"
+            )
         values[name], origins[name], sources[name] = entry.get("value"), str(entry["kind"]), source
     return values, origins, sources
 
 
 def _read_ranges(
-    path: Path, declared_fields: Mapping[str, Field[Any]], sections: Mapping[str, Any]
+    parameter_path: Path, declared_fields: Mapping[str, Field[Any]], toml_sections: Mapping[str, Any]
 ) -> dict[str, tuple[float, float]]:
     """Read {structured name: (smallest, largest value)} of the entries that state a range.
 
     Raises ValueError, one line, if the range does not contain the value or is outside the field's interval.
     """
     ranges: dict[str, tuple[float, float]] = {}
-    for name, entry in list_entries(sections):
+    for name, entry in list_entries(toml_sections):
         if "range" not in entry:
             continue
         ends, value = entry["range"], entry.get("value")
         numbers = isinstance(ends, list) and len(ends) == 2 and all(type(x) in (int, float) for x in ends)
         if not numbers or type(value) not in (int, float) or not ends[0] <= value <= ends[1] > ends[0]:
-            raise ValueError(f"{path}: {name}: range = {ends!r}, expected [LOW, HIGH] around {value!r}")
+            raise ValueError(
+                f"{parameter_path}: {name}: range = {ends!r}, expected [LOW, HIGH] around {value!r}"
+            )
         for text in (find_problem(name, float(end), declared_fields[name]) for end in ends):
             if text:
-                raise ValueError(f"{path}: range of {text}")
+                raise ValueError(f"{parameter_path}: range of {text}")
         ranges[name] = (float(ends[0]), float(ends[1]))
     return ranges
 
 
-def list_entries(sections: Mapping[str, object], prefix: str = "") -> list[tuple[str, Any]]:
+def list_entries(toml_sections: Mapping[str, object], name_prefix: str = "") -> list[tuple[str, Any]]:
     """List (structured name, entry) of each innermost item of the nested tables of a parameter file.
 
     Innermost items are tables with a key `value`, empty tables and all items that are no table.
     """
     items: list[tuple[str, Any]] = []
-    for key, value in sections.items():
+    for key, value in toml_sections.items():
         if isinstance(value, Mapping) and value and "value" not in value:
-            items += list_entries(value, f"{prefix}{key}.")
+            items += list_entries(value, f"{name_prefix}{key}.")
         else:
-            items.append((prefix + key, value))
+            items.append((name_prefix + key, value))
     return items
 
 
 def _input_fields(joint_name: str) -> dict[str, Field[Any]]:
-    """{`inputs.NAME`: field} of the inputs of all models of a joint."""
+    """Declared fields {`inputs.NAME`: field} of the inputs of all models of a joint."""
     inputs = (v for model in KINDS[joint_name].models for v in model.inputs)
     return {_INPUTS_SECTION_PREFIX + v.name: quantity_field(v.unit, v.doc, ge=v.minimum) for v in inputs}
 
 
 def _heights_prefix(cls: type) -> str:
-    """Prefix of the entries with surface heights: `roughness.` if the law has h, else `comparison.`."""
+    """Prefix of surface heights in a file: `roughness.` if the law depends on them, else `comparison.`."""
     return (
         _ROUGHNESS_SECTION_PREFIX
         if any(is_combined_height(name) for name, _ in flatten_fields(cls))
@@ -398,15 +429,15 @@ def is_combined_height(parameter_name: str) -> bool:
     )
 
 
-def _roughness_fields(prefix: str) -> dict[str, Field[Any]]:
-    """{prefix + name: field} of the heights of the surfaces."""
-    return {prefix + name: item for name, item in roughness.HEIGHT_FIELDS.items()}
+def _roughness_fields(name_prefix: str) -> dict[str, Field[Any]]:
+    """Declared fields {name_prefix + name: field} of the roughness heights that a file may state."""
+    return {name_prefix + name: item for name, item in roughness.HEIGHT_FIELDS.items()}
 
 
 def _pop_section(values_by_name: dict[str, Any], section_prefix: str) -> dict[str, Any]:
-    """Remove the entries of a file section from {structured name: value}.
+    """Remove the entries of a file section from {structured name: value}, and return them.
 
-    Returns them as {name in the section: value}.
+    Returns {name in the section: value}.
     """
     return {
         n.removeprefix(section_prefix): values_by_name.pop(n)
@@ -426,18 +457,22 @@ def _check_start_values(joint_name: str, start_values: Mapping[str, Any]) -> dic
     return {name: float(value) for name, value in start_values.items()}
 
 
-def format_parameter_file(parameters: ParameterFile) -> str:
+def format_parameter_file(parameter_file: ParameterFile) -> str:
     """Text of a parameter file (TOML), with the heights of the surfaces and the start values of inputs."""
-    declared = dict(flatten_fields(type(parameters.values))) | _roughness_fields(parameters.heights_prefix)
-    values = sorted(parameters.values_by_name.items(), key=lambda item: "." in item[0])
-    values += [(parameters.heights_prefix + name, value) for name, value in parameters.roughness.items()]
-    if parameters.inputs:
-        declared |= _input_fields(parameters.joint)
-        values += [(_INPUTS_SECTION_PREFIX + name, value) for name, value in parameters.inputs.items()]
-    lines = [f"schema = {SCHEMA_VERSION}", f'joint = "{parameters.joint}"']
-    if parameters.joint in KINDS:  # else a partner of a joint
-        lines.append(f'law = "{parameters.law}"')
-    lines.append(f"name = {format_toml_string(parameters.name)}")
+    declared = dict(flatten_fields(type(parameter_file.values))) | _roughness_fields(
+        parameter_file.heights_prefix
+    )
+    values = sorted(parameter_file.values_by_name.items(), key=lambda item: "." in item[0])
+    values += [
+        (parameter_file.heights_prefix + name, value) for name, value in parameter_file.roughness.items()
+    ]
+    if parameter_file.inputs:
+        declared |= _input_fields(parameter_file.joint)
+        values += [(_INPUTS_SECTION_PREFIX + name, value) for name, value in parameter_file.inputs.items()]
+    lines = [f"schema = {SCHEMA_VERSION}", f'joint = "{parameter_file.joint}"']
+    if parameter_file.joint in KINDS:  # else a partner of a joint
+        lines.append(f'law = "{parameter_file.law}"')
+    lines.append(f"name = {format_toml_string(parameter_file.name)}")
     section = ""
     for name, value in values:
         if value == ():  # not stated
@@ -448,27 +483,27 @@ def format_parameter_file(parameters: ParameterFile) -> str:
             section = head
         unit = declared[name].metadata.get("unit")
         fields = [f"value = {_format_toml(value)}", *([f'unit = "{unit}"'] if unit else [])]
-        if name in parameters.ranges:
-            fields += [f"range = [{', '.join(map(repr, parameters.ranges[name]))}]"]
-        kind, source = parameters.describe_source(name)
+        if name in parameter_file.ranges:
+            fields += [f"range = [{', '.join(map(repr, parameter_file.ranges[name]))}]"]
+        kind, source = parameter_file.describe_source(name)
         fields += [f'kind = "{kind}"', f"source = {format_toml_string(source)}"]
         lines.append(f"{leaf} = {{ {', '.join(fields)} }}")
     return "\n".join(lines) + "\n"
 
 
-def _format_toml(value: Any) -> str:
+def _format_toml(toml_value: Any) -> str:
     """Format a value as TOML: number, text, boolean or list."""
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, tuple):
+    if isinstance(toml_value, bool):
+        return str(toml_value).lower()
+    if isinstance(toml_value, tuple):
         rows = [
-            ", ".join(map(repr, value[i : i + _NUMBERS_PER_LINE]))
-            for i in range(0, len(value), _NUMBERS_PER_LINE)
+            ", ".join(map(repr, toml_value[i : i + _NUMBERS_PER_LINE]))
+            for i in range(0, len(toml_value), _NUMBERS_PER_LINE)
         ]
         return "[\n  " + ",\n  ".join(rows) + ",\n]"
-    return format_toml_string(value) if isinstance(value, str) else repr(float(value))
+    return format_toml_string(toml_value) if isinstance(toml_value, str) else repr(float(toml_value))
 
 
 def load_default(joint_name: str, law_name: str | None = None) -> ParameterFile:
-    """Read the default parameter file of a joint; `law_name` None: with the joint's first law."""
+    """Read the default parameter file of a joint with an interface law; None: the joint's first law."""
     return load_parameter_file(KINDS[joint_name].default_file(law_name), joint_name)

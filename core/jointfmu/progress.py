@@ -31,33 +31,36 @@ _PROCESS_START_LOCK = Lock()
 
 
 def track_progress(
-    items: Iterable[Result], bar_label: str, item_count: int | None = None
+    job_items: Iterable[Result], bar_label: str, item_count: int | None = None
 ) -> Iterator[Result]:
     """Yield the items; show a progress bar if tqdm (extra `build`) is installed and stderr is a terminal."""
     try:
         from tqdm import tqdm
     except ImportError:
-        yield from items
+        yield from job_items
         return
     tqdm.set_lock(RLock())  # tqdm's default lock is shared by processes, and left behind by killed ones
     _status_line["bars"] += 1
     try:
-        yield from tqdm(items, desc=bar_label, total=item_count, file=sys.stderr, disable=None, leave=False)
+        yield from tqdm(
+            job_items, desc=bar_label, total=item_count, file=sys.stderr, disable=None, leave=False
+        )
     finally:
         _status_line["bars"] -= 1
 
 
 def set_status_text(status_text: str) -> None:
-    """Set the status text that `show_status` prints: the current step of the work."""
+    """Set the name of the current step of the work, which the status line shows."""
     _status_line["step"] = status_text
 
 
 @contextmanager
 def show_status(command_name: str) -> Iterator[None]:
-    """Context that shows a status line with name, step and seconds, on a terminal without a progress bar.
+    """Context that shows a status line: name of the command, current step, and elapsed seconds.
 
-    Where standard error is no terminal (a pipe, a notebook), it prints one line after STATUS_DELAY, and one
-    every MAX_STATUS_PERIOD. Inside another such context it does nothing.
+    The line disappears while a progress bar is shown. Where standard error is no terminal (a pipe, a
+    notebook), it prints one line after STATUS_DELAY, and one every MAX_STATUS_PERIOD. Inside another such
+    context it does nothing.
     """
     if _status_line["is_shown"]:
         yield
@@ -72,7 +75,7 @@ def show_status(command_name: str) -> Iterator[None]:
 
 @contextmanager
 def _show_outer_status(command_name: str) -> Iterator[None]:
-    """Context that shows a status line, for the outermost of nested `show_status`."""
+    """Context that shows the status line of a command; called once, by the outermost `show_status`."""
     if not sys.stderr.isatty():
         with _print_status_lines(command_name):
             yield
@@ -131,28 +134,28 @@ def _print_status_lines(command_name: str) -> Iterator[None]:
 class _StatusClearingStream:
     """Output stream that clears the status line before it writes."""
 
-    def __init__(self, stream: Any, clear_status: Callable[[], None]) -> None:
-        self._stream, self._clear = stream, clear_status
+    def __init__(self, output_stream: Any, clear_status: Callable[[], None]) -> None:
+        self._stream, self._clear = output_stream, clear_status
 
-    def write(self, text: str) -> int:
-        """Clear the status line and write; the line is printed again below the text while work continues."""
+    def write(self, output_text: str) -> int:
+        """Clear the status line and write a text; the status is later printed again, below the text."""
         self._clear()
-        return int(self._stream.write(text))
+        return int(self._stream.write(output_text))
 
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._stream, name)
+    def __getattr__(self, attribute_name: str) -> Any:
+        return getattr(self._stream, attribute_name)
 
 
 def map_jobs(
-    pool: Executor | None, job_function: Callable[..., Result], bar_label: str, *jobs: Sequence[object]
+    worker_pool: Executor | None, job_function: Callable[..., Result], bar_label: str, *jobs: Sequence[object]
 ) -> list[Result]:
     """Apply a function to all jobs; return the results in the order of the jobs. Shows a progress bar.
 
-    pool : processes that share the jobs; None: this process does them
-    jobs : sequences of the arguments of the function, as for `map`
+    worker_pool : processes that share the jobs; None: this process does them
+    jobs : one sequence for each argument of the function, with its values for all jobs, as for `map`
     """
     count = len(jobs[0])
-    run = pool.map if pool and count > 1 else map
+    run = worker_pool.map if worker_pool and count > 1 else map
     return list(track_progress(run(job_function, *jobs), bar_label, count))
 
 
@@ -227,15 +230,15 @@ def run_jobs(
     with ExitStack() as entered:
         running: dict[Future[Result], tuple[Job, int, Executor]] = {}
 
-        def submit_job(job: Job, attempt: int, pool: Executor | None) -> None:
-            """Give a job to a worker process, and store the number of its attempt."""
+        def submit_job(job: Job, attempt_number: int, worker_pool: Executor | None) -> None:
+            """Submit a job to a worker process, and store how many times the job was attempted."""
             try:
-                pool = pool or entered.enter_context(worker_processes(1))
-                future = pool.submit(job_function, job)
+                worker_pool = worker_pool or entered.enter_context(worker_processes(1))
+                future = worker_pool.submit(job_function, job)
             except BrokenProcessPool:  # its process died after its last job
-                submit_job(job, attempt, None)
+                submit_job(job, attempt_number, None)
             else:
-                running[future] = job, attempt, pool
+                running[future] = job, attempt_number, worker_pool
                 future.add_done_callback(finished.put)
 
         for job in islice(waiting, process_count or os.cpu_count() or 1):

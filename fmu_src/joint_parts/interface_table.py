@@ -12,13 +12,13 @@ from jointfmu.quantity import Number, flatten_parameters, group_field, quantity_
 
 
 @dataclass(frozen=True, kw_only=True)
-class _SplineNumbers:
-    """First point, last pressure and spline of a `StiffnessTable`, as single numbers.
+class _SplineTableParameters:
+    """Parameters of the law `table` as single numbers, from which the spline of the stiffness is assembled.
 
     Subclasses add one field for each number of the spline.
     """
 
-    columns: ClassVar[Mapping[str, tuple[str, ...]]] = {
+    number_names_by_spline_column: ClassVar[Mapping[str, tuple[str, ...]]] = {
         column: tuple(f"{column}_{i}" for i in range(MAX_TABLE_POINTS)) for column in LogSpline._fields
     }
     """{column of the spline: names of its numbers}."""
@@ -29,68 +29,76 @@ class _SplineNumbers:
 
     @property
     def first_point(self) -> tuple[Number, Number]:
-        """Pressure [Pa] and stiffness [Pa/m] of the first point."""
+        """Pressure [Pa] and interface stiffness [Pa/m] of the first point of the table."""
         return self.first_pressure, self.first_stiffness
 
     @property
     def spline(self) -> LogSpline:
-        """Spline of the log-stiffness over the log-pressure, from its numbers."""
-        return LogSpline(*([getattr(self, name) for name in names] for names in self.columns.values()))
+        """Spline of ln(stiffness) as a function of ln(pressure), assembled from the single numbers."""
+        return LogSpline(
+            *(
+                [getattr(self, name) for name in names]
+                for names in self.number_names_by_spline_column.values()
+            )
+        )
 
 
-_NUMBER_FIELDS = [
+_SPLINE_NUMBER_FIELDS = [
     (name, float, quantity_field("1", f"{column} of the spline at point {i}"))
-    for column, names in _SplineNumbers.columns.items()
+    for column, names in _SplineTableParameters.number_names_by_spline_column.items()
     for i, name in enumerate(names)
 ]
 """Dataclass fields for the numbers of the spline."""
-_STATED_FIELDS = [
+_SINGLE_NUMBER_TABLE_FIELDS = [
     (item.name, float, field(metadata=item.metadata, default=item.default))
     for item in fields(StiffnessTable)
     if "series" not in item.metadata
 ]
 """Dataclass fields of `StiffnessTable` that are single numbers: ratio and factor."""
-_TableLawNumbers = make_dataclass(
-    "_TableLawNumbers",
-    [*_NUMBER_FIELDS, *_STATED_FIELDS],
-    bases=(_SplineNumbers,),
+_TableLawSplineParameters = make_dataclass(
+    "_TableLawSplineParameters",
+    [*_SPLINE_NUMBER_FIELDS, *_SINGLE_NUMBER_TABLE_FIELDS],
+    bases=(_SplineTableParameters,),
     frozen=True,
     kw_only=True,
 )
 """Section [table] of the parameter set with which the C code is generated."""
 
 
-def _find_table(parameters: object) -> StiffnessTable | None:
-    """Points of the stiffness in a parameter set with the law `table`; None for another law."""
-    table = getattr(parameters, "table", None)
+def _find_stiffness_table(parameter_set: object) -> StiffnessTable | None:
+    """Stiffness table of a parameter set with the law `table`; None for another law."""
+    table = getattr(parameter_set, "table", None)
     return table if isinstance(table, StiffnessTable) else None
 
 
-def find_code_class(parameters: object) -> type[object]:
-    """Class of the parameter set for the C code: a spline replaces the points of a stiffness table."""
-    cls = type(parameters)
-    return cls if _find_table(parameters) is None else _class_with_numbers(cls)  # type: ignore[arg-type]
+def find_code_parameter_class(parameter_set: object) -> type[object]:
+    """Class of the parameter set with which C code is generated: splines replace stiffness tables."""
+    cls = type(parameter_set)
+    return cls if _find_stiffness_table(parameter_set) is None else _make_spline_table_parameter_class(cls)  # type: ignore[arg-type]
 
 
 @cache
-def _class_with_numbers(cls: Any) -> type[object]:
-    """Class of a parameter set in which the spline's numbers replace the points of the table."""
-    section = ("table", _TableLawNumbers, group_field("spline of the stiffness over the pressure"))
+def _make_spline_table_parameter_class(cls: Any) -> type[object]:
+    """Make a subclass of a parameter set in which numbers of the spline replace the points of the table."""
+    section = ("table", _TableLawSplineParameters, group_field("spline of the stiffness over the pressure"))
     return make_dataclass(cls.__name__, [section], bases=(cls,), frozen=True, kw_only=True)
 
 
-def replace_points(parameters: object) -> Mapping[str, Any]:
-    """Replace the points of the table in {structured name: value} by the numbers of their spline.
+def replace_table_points(parameter_set: object) -> Mapping[str, Any]:
+    """Parameters {structured name: value} with the points of a stiffness table replaced by spline numbers.
 
-    Tables with fewer points repeat the first one, which adds segments without length.
+    The spline always has MAX_TABLE_POINTS points: a shorter table repeats its first point, which adds
+    segments without length.
     """
-    values, table = flatten_parameters(parameters), _find_table(parameters)
+    values, table = flatten_parameters(parameter_set), _find_stiffness_table(parameter_set)
     if table is None:
         return values
     missing = MAX_TABLE_POINTS - len(table.pressure)
     numbers = dict(zip(("first_pressure", "first_stiffness"), table.first_point, strict=True))
     numbers["last_pressure"] = table.last_pressure
-    for names, column in zip(_SplineNumbers.columns.values(), table.spline, strict=True):
+    for names, column in zip(
+        _SplineTableParameters.number_names_by_spline_column.values(), table.spline, strict=True
+    ):
         numbers |= dict(zip(names, np.pad(column, (missing, 0), mode="edge").tolist(), strict=True))
     points = ("table.pressure", "table.stiffness")
     return {name: value for name, value in values.items() if name not in points} | {

@@ -11,62 +11,64 @@ TRANSLATIONAL_FLANGE_CLASS = "Modelica.Mechanics.Translational.Interfaces.Flange
 class Terminal(NamedTuple):
     """Flange (FMI terminal) of an FMU: the variables of one mechanical connection.
 
-    connector_class : class of the Modelica connector without its last letter
-    side            : this letter: "a" is left, "b" is right
-    members         : {Modelica member: (FMU variable, variableKind of FMI)}
-    icon_y          : vertical position at the edge of the icon, from -100 to 100
+    connector_class  : class of the Modelica connector without its last letter a or b
+    flange_side      : last letter of this class: "a" is drawn left, "b" right
+    member_variables : {Modelica member: (FMU variable, variableKind of FMI)}
+    icon_y_position  : vertical position at the edge of the FMU's icon, from -100 to 100
     """
 
-    name: str
+    terminal_name: str
     connector_class: str
-    side: str
-    doc: str
-    members: dict[str, tuple[str, str]]
-    icon_y: float = 0.0
+    flange_side: str
+    flange_description: str
+    member_variables: dict[str, tuple[str, str]]
+    icon_y_position: float = 0.0
 
 
-def _motion_members(
+def _make_motion_member_variables(
     connector_class: str, position_name: str, rate_name: str, load_name: str
 ) -> dict[str, tuple[str, str]]:
-    """{Modelica member: (variable, variableKind)} of a flange whose inputs are motion."""
+    """{Modelica member: (FMU variable, variableKind)} of a flange with motion as input and load as output."""
     names = ("phi", "w", "tau") if connector_class == ROTATIONAL_FLANGE_CLASS else ("s", "v", "f")
     pairs = ((position_name, "signal"), (rate_name, "signal"), (load_name, "outflow"))
     return dict(zip(names, pairs, strict=True))
 
 
-def make_translation_flange(direction: str, icon_y: float) -> Terminal:
+def make_translation_flange(axis_name: str, icon_y_position: float) -> Terminal:
     """Make the flange of a joint whose input is the relative translation of its two sides along an axis."""
-    members = _motion_members(
-        TRANSLATIONAL_FLANGE_CLASS, f"s_rel_{direction}", f"v_rel_{direction}", f"f_{direction}"
+    members = _make_motion_member_variables(
+        TRANSLATIONAL_FLANGE_CLASS, f"s_rel_{axis_name}", f"v_rel_{axis_name}", f"f_{axis_name}"
     )
     return Terminal(
-        f"flange_{direction}",
+        f"flange_{axis_name}",
         TRANSLATIONAL_FLANGE_CLASS,
         "b",
-        f"side 2 along {direction}, side 1 fixed",
+        f"side 2 along {axis_name}, side 1 fixed",
         members,
-        icon_y,
+        icon_y_position,
     )
 
 
-def make_rotation_flange(direction: str, icon_y: float) -> Terminal:
+def make_rotation_flange(axis_name: str, icon_y_position: float) -> Terminal:
     """Make a flange of a joint whose input is the small relative rotation of its two sides about an axis."""
-    members = _motion_members(
-        ROTATIONAL_FLANGE_CLASS, f"theta_{direction}", f"omega_{direction}", f"m_{direction}"
+    members = _make_motion_member_variables(
+        ROTATIONAL_FLANGE_CLASS, f"theta_{axis_name}", f"omega_{axis_name}", f"m_{axis_name}"
     )
     return Terminal(
-        f"flange_turn_{direction}",
+        f"flange_turn_{axis_name}",
         ROTATIONAL_FLANGE_CLASS,
         "b",
-        f"side 2 about {direction}, side 1 fixed",
+        f"side 2 about {axis_name}, side 1 fixed",
         members,
-        icon_y,
+        icon_y_position,
     )
 
 
-def make_shaft_flange(shaft_number: int, side: str, doc: str) -> Terminal:
+def make_shaft_flange(shaft_number: int, flange_side: str, flange_description: str) -> Terminal:
     """Make the flange of one shaft of a joint whose inputs are the motions of its shafts."""
-    members = _motion_members(
+    members = _make_motion_member_variables(
         ROTATIONAL_FLANGE_CLASS, f"phi{shaft_number}", f"w{shaft_number}", f"tau{shaft_number}"
     )
-    return Terminal(f"flange{shaft_number}", ROTATIONAL_FLANGE_CLASS, side, doc, members)
+    return Terminal(
+        f"flange{shaft_number}", ROTATIONAL_FLANGE_CLASS, flange_side, flange_description, members
+    )

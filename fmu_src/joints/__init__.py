@@ -4,9 +4,11 @@ from importlib import import_module
 
 from jointfmu.joints import KINDS
 
-from ..joint_parts import FmuParts
+from ..joint_parts import FmuBuildData
 
-FMU_PARTS: dict[str, FmuParts] = {
-    name: import_module(f".{name}", __name__).FMU_PARTS for name, kind in KINDS.items() if kind.is_builtin
+FMU_BUILD_DATA: dict[str, FmuBuildData] = {
+    name: import_module(f".{name}", __name__).FMU_BUILD_DATA
+    for name, kind in KINDS.items()
+    if kind.is_builtin
 }
 """{name of a joint: its builder data}; joints of other packages add an entry."""

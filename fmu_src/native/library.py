@@ -7,27 +7,27 @@ from typing import NamedTuple
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 
-from .compiled.binary import fill_library
+from .compiled.binary import fill_library_placeholders
 from .compiled.compiled_models import FMI_VERSIONS, get_compiled_model
 from .compiled.compiler import ZIG_TARGETS
-from .data import make_fmu_data, make_placeholder, split_parameters
+from .data import make_fmu_data_struct, make_placeholder_data_struct, split_parameters
 
 
 class JointLibrary(NamedTuple):
-    """Shared library of a joint with its data.
+    """Shared library of a joint's FMU with the data of a parameter file.
 
-    content : bytes of the file
-    token   : instantiation token
+    library_bytes       : content of the library file
+    instantiation_token : token that instantiation of the FMU needs
     """
 
-    content: bytes
-    token: str
+    library_bytes: bytes
+    instantiation_token: str
 
 
-def machine_platform() -> str:
-    """Platform of this process, by its name in FMI 3.0.
+def find_machine_platform() -> str:
+    """Name in FMI 3.0 of the platform of this process, for example x86_64-linux.
 
-    Raises RuntimeError if libraries are not compiled for it.
+    Raises RuntimeError if jointfmu compiles no libraries for this platform.
     """
     system = {"win32": "windows", "linux": "linux", "darwin": "darwin"}.get(sys.platform, sys.platform)
     processor = {"amd64": "x86_64", "arm64": "aarch64"}.get(platform.machine().lower(), platform.machine())
@@ -39,17 +39,22 @@ def machine_platform() -> str:
     return name
 
 
-def make_joint_library(model: Model, parameters: ParameterFile) -> JointLibrary:
-    """Make the shared library that the native FMU of a model contains for this machine.
+def make_joint_library(fmu_model: Model, parameter_file: ParameterFile) -> JointLibrary:
+    """Make the shared library that the native FMU of a joint contains for this machine.
 
     The library is compiled for this machine alone, unless a build has compiled it already.
 
-    Raises ImportError if it must be compiled and a package is missing, RuntimeError for a platform without
-    libraries and if the compiler fails.
+    Raises ImportError if the library must be compiled and a package is missing, RuntimeError for a platform
+    without libraries and if the compiler fails.
     """
-    split = split_parameters(model, parameters)
-    target = machine_platform()
-    compiled = get_compiled_model(model, parameters, split, target)
-    data = make_fmu_data(model, parameters, split, compiled.sources)
-    library = compiled.libraries[FMI_VERSIONS[-1]][target]
-    return JointLibrary(fill_library(library, make_placeholder(model, split), data, model.title), data.token)
+    split = split_parameters(fmu_model, parameter_file)
+    target = find_machine_platform()
+    compiled = get_compiled_model(fmu_model, parameter_file, split, target)
+    data = make_fmu_data_struct(fmu_model, parameter_file, split, compiled.source_texts)
+    library = compiled.libraries_by_fmi_version[FMI_VERSIONS[-1]][target]
+    return JointLibrary(
+        fill_library_placeholders(
+            library, make_placeholder_data_struct(fmu_model, split), data, fmu_model.title
+        ),
+        data.instantiation_token,
+    )

@@ -5,7 +5,7 @@ A partner is an inertia, a mass, a load or a prescribed motion that is connected
 
 from pathlib import Path
 
-from ..joint_parts import FmuParts, load_equations_definition
+from ..joint_parts import FmuBuildData, load_explicit_equations_definition
 from ..joint_parts.terminals import ROTATIONAL_FLANGE_CLASS, TRANSLATIONAL_FLANGE_CLASS, Terminal
 from .models import PARTNERS, load_partner_parameters
 
@@ -13,7 +13,7 @@ from .models import PARTNERS, load_partner_parameters
 def _make_body_flanges(
     position_name: str, speed_name: str, load_name: str, connector_class: str, body_name: str
 ) -> tuple[Terminal, ...]:
-    """Make two flanges of an inertia or mass; each has its own load input."""
+    """Make the two flanges of an inertia or mass; each flange has its own load input."""
     members = {position_name: (position_name, "signal"), speed_name: (speed_name, "signal")}
     loads = {side: f"{load_name}_{side}" for side in ("a", "b")}
     return tuple(
@@ -28,9 +28,9 @@ def _make_body_flanges(
     )
 
 
-FMU_PARTS = FmuParts(
-    folder=Path(__file__).parent,
-    native=load_equations_definition,
+FMU_BUILD_DATA = FmuBuildData(
+    joint_folder=Path(__file__).parent,
+    load_native_definition=load_explicit_equations_definition,
     terminals={  # a load over time has no motion and so no flange
         "RotationalInertia": _make_body_flanges("phi", "w", "tau", ROTATIONAL_FLANGE_CLASS, "the inertia"),
         "TranslationalMass": _make_body_flanges("s", "v", "f", TRANSLATIONAL_FLANGE_CLASS, "the mass"),
@@ -38,4 +38,4 @@ FMU_PARTS = FmuParts(
 )
 """Builder data of the partners."""
 
-__all__ = ["FMU_PARTS", "PARTNERS", "load_partner_parameters"]
+__all__ = ["FMU_BUILD_DATA", "PARTNERS", "load_partner_parameters"]

@@ -17,10 +17,10 @@ GRAVITY = 9.80665
 """Standard acceleration of free fall [m/s2]."""
 
 
-def _declare_lag_parameter(flange: str) -> Any:
-    """Declare the parameter `lag_...` of a body: delay of the load on a flange in communication steps [1]."""
+def _declare_lag_parameter(flange_name: str) -> Any:
+    """Declare a body's parameter: delay of the force or torque on a flange in communication steps [1]."""
     doc = (
-        f"delay of the load on {flange} in communication steps: 1 if a joint feeds it "
+        f"delay of the load on {flange_name} in communication steps: 1 if a joint feeds it "
         f"in a parallel master, else 0"
     )
     return quantity_field("1", doc, ge=0.0, le=1.0)
@@ -28,7 +28,7 @@ def _declare_lag_parameter(flange: str) -> Any:
 
 @dataclass(frozen=True, kw_only=True)
 class RotationalInertia(CheckedParameters):
-    """Rotational inertia loaded by two torques and its weight."""
+    """Rotational inertia (pendulum) loaded by two torques and its weight."""
 
     inertia_name: ClassVar[str] = "J"
     J: float = quantity_field("kg.m2", "moment of inertia about the axis", gt=0.0)
@@ -38,7 +38,7 @@ class RotationalInertia(CheckedParameters):
     lag_b: float = _declare_lag_parameter("b")
 
     def evaluate_outputs(self, variable_values: Mapping[str, Number]) -> dict[str, Number]:
-        """Angle [rad] from the hanging position, angular speed [rad/s] and acceleration [rad/s2]."""
+        """Angle [rad] of the inertia from the hanging position, speed [rad/s], acceleration [rad/s2]."""
         weight = self.m * GRAVITY * self.l * np.sin(variable_values["phi"])
         return {
             "phi": variable_values["phi"],
@@ -66,8 +66,8 @@ class TranslationalMass(CheckedParameters):
 
 
 @dataclass(frozen=True, kw_only=True)
-class _RampAndPulse(CheckedParameters):
-    """Load over time: a ramp that stays at its end value, plus a pulse.
+class _RampAndPulseLoad(CheckedParameters):
+    """Force or torque as a function of time: a ramp that stays at its end value, plus a pulse.
 
     Subclasses define the heights of ramp and pulse.
     """
@@ -84,17 +84,19 @@ class _RampAndPulse(CheckedParameters):
         ramp = (self.ramp_start, self.ramp_start + self.ramp_duration)
         return (*ramp, self.pulse_start, top, fall, fall + self.pulse_rise)
 
-    def evaluate_load(self, time: Number, ramp_height: Number, pulse_height: Number) -> Number:
-        """Load at a time [s], for given heights of ramp and pulse."""
-        rise = smooth_step((time - self.pulse_start) / self.pulse_rise)
-        fall = smooth_step((time - self.pulse_start - self.pulse_rise - self.pulse_hold) / self.pulse_rise)
-        return ramp_height * smooth_step((time - self.ramp_start) / self.ramp_duration) + pulse_height * (
-            rise - fall
+    def evaluate_load(self, simulation_time: Number, ramp_height: Number, pulse_height: Number) -> Number:
+        """Force [N] or torque [N.m] at a time [s], for an end value of the ramp and a peak of the pulse."""
+        rise = smooth_step((simulation_time - self.pulse_start) / self.pulse_rise)
+        fall = smooth_step(
+            (simulation_time - self.pulse_start - self.pulse_rise - self.pulse_hold) / self.pulse_rise
         )
+        return ramp_height * smooth_step(
+            (simulation_time - self.ramp_start) / self.ramp_duration
+        ) + pulse_height * (rise - fall)
 
 
 @dataclass(frozen=True, kw_only=True)
-class TorqueProfile(_RampAndPulse):
+class TorqueProfile(_RampAndPulseLoad):
     """Prescribed torque over time: ramp and pulse."""
 
     ramp_height: float = quantity_field("N.m", "torque at the end of the ramp")
@@ -109,7 +111,7 @@ class TorqueProfile(_RampAndPulse):
 
 
 @dataclass(frozen=True, kw_only=True)
-class ForceProfile(_RampAndPulse):
+class ForceProfile(_RampAndPulseLoad):
     """Prescribed force over time: ramp and pulse."""
 
     ramp_height: float = quantity_field("N", "force at the end of the ramp")
@@ -125,7 +127,7 @@ class ForceProfile(_RampAndPulse):
 
 @dataclass(frozen=True, kw_only=True)
 class AngleProfile(CheckedParameters):
-    """Prescribed rotation from rest to rest, as of a motor that follows its command exactly."""
+    """Prescribed rotation from rest to rest over time, as of a motor that follows its command exactly."""
 
     start: float = quantity_field("s", "start time of the rotation")
     duration: float = quantity_field("s", "duration of the rotation", gt=0.0)
@@ -145,11 +147,11 @@ class AngleProfile(CheckedParameters):
         }
 
 
-CONTROL_POINT_COUNT = 17
+TORQUE_CURVE_CONTROL_POINT_COUNT = 17
 """Number of control points of a TorqueCurve [1]."""
 
 
-_CONTROL_POINT_NAMES = [f"p{k + 1}" for k in range(CONTROL_POINT_COUNT)]
+_TORQUE_CONTROL_POINT_NAMES = [f"p{k + 1}" for k in range(TORQUE_CURVE_CONTROL_POINT_COUNT)]
 """Parameter names of the control points: p1, p2, ..."""
 
 
@@ -162,27 +164,28 @@ class _BernsteinTorque(CheckedParameters):
 
     @staticmethod
     def basis_functions(normalized_time: Number) -> list[Number]:
-        """Bernstein basis (17): weight of each control point at the normalized time x [1], 0 to 1."""
+        """Bernstein polynomials (17): weights of the control points at a time scaled to 0 ... 1."""
         r = np.fmin(np.fmax(normalized_time, 0.0), 1.0)
-        last = CONTROL_POINT_COUNT - 1
-        return [comb(last, k) * r**k * (1.0 - r) ** (last - k) for k in range(CONTROL_POINT_COUNT)]
+        last = TORQUE_CURVE_CONTROL_POINT_COUNT - 1
+        return [
+            comb(last, k) * r**k * (1.0 - r) ** (last - k) for k in range(TORQUE_CURVE_CONTROL_POINT_COUNT)
+        ]
 
     @classmethod
     def fit_control_points(
-        cls, normalized_times: NDArray[np.float64], torque: NDArray[np.float64]
+        cls, normalized_times: NDArray[np.float64], torque_values: NDArray[np.float64]
     ) -> dict[str, float]:
-        """Fit control points {name: torque [N.m]} of a torque curve to torques at times x [1], 0 to 1.
+        """Fit control points {name: torque [N.m]} to a torque curve by least squares; exact at both ends.
 
-        The curve is exact at both ends.
-
-        Least squares at the given points.
+        normalized_times : (n) times of the curve [1], 0 to 1
+        torque_values    : (n) torques at these times [N.m]
         """
         weights = np.stack(cls.basis_functions(normalized_times), axis=1)
-        ends = [0, CONTROL_POINT_COUNT - 1]
-        remainder = torque - weights[:, ends] @ torque[[0, -1]]
+        ends = [0, TORQUE_CURVE_CONTROL_POINT_COUNT - 1]
+        remainder = torque_values - weights[:, ends] @ torque_values[[0, -1]]
         inner, *_ = np.linalg.lstsq(weights[:, 1:-1], remainder, rcond=None)
-        points = [torque[0], *inner, torque[-1]]
-        return dict(zip(_CONTROL_POINT_NAMES, map(float, points), strict=True))
+        points = [torque_values[0], *inner, torque_values[-1]]
+        return dict(zip(_TORQUE_CONTROL_POINT_NAMES, map(float, points), strict=True))
 
     def find_corner_times(self) -> tuple[Number, ...]:
         """Times [s] at which the prescribed torque begins and ends to change."""
@@ -192,20 +195,23 @@ class _BernsteinTorque(CheckedParameters):
         """Prescribed torque [N.m] at the time of the variables, plus the input torque."""
         weights = self.basis_functions((variable_values["time"] - self.start) / self.duration)
         terms = [
-            getattr(self, name) * weight for name, weight in zip(_CONTROL_POINT_NAMES, weights, strict=True)
+            getattr(self, name) * weight
+            for name, weight in zip(_TORQUE_CONTROL_POINT_NAMES, weights, strict=True)
         ]
         return {"tau": variable_values["tau_in"] + sum(terms)}
 
 
 def _define_control_point(point_name: str) -> tuple[str, type, Any]:
     """Define the dataclass field of the torque [N.m] at one control point of the Bernstein polynomial."""
-    doc = f"torque at point {point_name[1:]} of {CONTROL_POINT_COUNT} of the Bernstein polynomial"
+    doc = (
+        f"torque at point {point_name[1:]} of {TORQUE_CURVE_CONTROL_POINT_COUNT} of the Bernstein polynomial"
+    )
     return point_name, float, quantity_field("N.m", doc)
 
 
 TorqueCurve: type[_BernsteinTorque] = make_dataclass(
     "TorqueCurve",
-    [_define_control_point(name) for name in _CONTROL_POINT_NAMES],
+    [_define_control_point(name) for name in _TORQUE_CONTROL_POINT_NAMES],
     bases=(_BernsteinTorque,),
     namespace={"__doc__": _BernsteinTorque.__doc__, "__module__": __name__},
     frozen=True,

@@ -17,9 +17,9 @@ from .laws import AngleProfile, ForceProfile, RotationalInertia, TorqueCurve, To
 
 def _make_model(
     parameter_class: type[Any],
-    doc: str,
-    inputs: Sequence[Variable],
-    outputs: Sequence[Variable],
+    model_description: str,
+    input_variables: Sequence[Variable],
+    output_variables: Sequence[Variable],
     load_ramp: LoadRamp,
     state_count: int = 0,
 ) -> Model:
@@ -27,18 +27,20 @@ def _make_model(
     return Model(
         name=parameter_class.__name__,
         joint="partner",
-        doc=doc,
+        doc=model_description,
         parameter_class=parameter_class,
         tabulate=lambda partner: partner,
-        inputs=inputs,
-        outputs=outputs,
+        inputs=input_variables,
+        outputs=output_variables,
         evaluate=lambda partner, values: partner.evaluate_outputs(values),
         validity_limits=(),
         ramp=load_ramp,
         # states depend on no input; the acceleration depends on the inputs and the position
-        dependencies={v.name: (v.name,) for v in outputs[:state_count]}
+        dependencies={v.name: (v.name,) for v in output_variables[:state_count]}
         | {
-            v.name: (*(i.name for i in inputs), outputs[0].name) for v in outputs[state_count:] if state_count
+            v.name: (*(i.name for i in input_variables), output_variables[0].name)
+            for v in output_variables[state_count:]
+            if state_count
         },
         state_count=state_count,
         is_time_dependent=True,
@@ -46,7 +48,7 @@ def _make_model(
     )
 
 
-_TORQUE_VARIABLES = (
+_TORQUE_PROFILE_VARIABLES = (
     (Variable("tau_in", "N.m", "torque added to the profile"),),
     (Variable("tau", "N.m", "torque"),),
 )
@@ -87,7 +89,7 @@ PARTNERS: dict[str, Model] = {
         _make_model(
             TorqueProfile,
             "Torque over time: smooth ramp to a constant value, and smooth pulse",
-            *_TORQUE_VARIABLES,
+            *_TORQUE_PROFILE_VARIABLES,
             LoadRamp("tau_in", 1.0, 1e-3, 1e-3, {"pulse_height": 1.0}),
         ),
         _make_model(
@@ -110,7 +112,7 @@ PARTNERS: dict[str, Model] = {
         _make_model(
             TorqueCurve,
             "Torque over time: a Bernstein polynomial, held before and after it",
-            *_TORQUE_VARIABLES,
+            *_TORQUE_PROFILE_VARIABLES,
             LoadRamp("tau_in", 1.0, 1e-3, 1e-3),
         ),
     )
@@ -119,23 +121,25 @@ PARTNERS: dict[str, Model] = {
 
 
 def load_partner_parameters(partner_name: str) -> ParameterFile:
-    """Load the parameter file of a partner FMU, models/partners/NAME.toml, see `read_partner_parameters`."""
+    """Load the shipped parameter file of a partner FMU, models/partners/NAME.toml."""
     path = Path(str(files("jointfmu_models") / "partners" / f"{partner_name}.toml"))
     return read_partner_parameters(path, partner_name)
 
 
-def read_partner_parameters(path: Path, partner_name: str) -> ParameterFile:
-    """Read the parameter file of a partner FMU.
+def read_partner_parameters(parameter_file_path: Path, partner_name: str) -> ParameterFile:
+    """Read the parameter file of a partner FMU (inertia, mass, load or prescribed motion).
 
-    Raises ValueError with one line that names the file, the entry and what is allowed.
+    Raises ValueError with one line that names the file, the wrong entry and the allowed values.
     """
-    document = read_document(path, "a partner's parameter file")
+    document = read_document(parameter_file_path, "a partner's parameter file")
     if document.get("partner") != partner_name:
-        raise ValueError(f"{path}: partner = {document.get('partner')!r}, expected {partner_name!r}")
+        raise ValueError(
+            f"{parameter_file_path}: partner = {document.get('partner')!r}, expected {partner_name!r}"
+        )
     cls = PARTNERS[partner_name].parameter_class
     body = {key: entry for key, entry in document.items() if key not in ("schema", "partner")}
-    values, origins, sources = read_entries(path, dict(flatten_fields(cls)), body)
+    values, origins, sources = read_entries(parameter_file_path, dict(flatten_fields(cls)), body)
     try:
         return ParameterFile("partner", partner_name, build_parameter_set(cls, values), origins, sources)
     except ValueError as error:
-        raise ValueError(f"{path}: {error}") from None
+        raise ValueError(f"{parameter_file_path}: {error}") from None

@@ -7,17 +7,19 @@ from importlib.util import find_spec
 from pathlib import Path
 
 
-def find_imported_modules(entry_modules: Sequence[str], root_packages: Collection[str]) -> dict[str, Path]:
-    """Find {name: file} of `entry_modules` and of the modules that they import at top level.
+def find_imported_modules(
+    entry_module_names: Sequence[str], root_package_names: Collection[str]
+) -> dict[str, Path]:
+    """Find given modules and all modules that they import, directly or through others: {name: file}.
 
-    The search follows the imports of each module found, within `root_packages`.
-    Parent packages of a module are included. Imports inside functions are not: they are optional at run time.
+    Only modules of the packages `root_package_names` are included, with their parent packages. Imports inside
+    functions are not followed: they are optional at run time.
     """
     files: dict[str, Path] = {}
-    pending = list(entry_modules)
+    pending = list(entry_module_names)
     while pending:
         name = pending.pop()
-        if name.partition(".")[0] not in root_packages or name in files:
+        if name.partition(".")[0] not in root_package_names or name in files:
             continue
         try:
             spec = find_spec(name)
@@ -33,13 +35,18 @@ def find_imported_modules(entry_modules: Sequence[str], root_packages: Collectio
     return files
 
 
-def _list_imports(module_text: str, package: str) -> Iterator[str]:
-    """Yield the module names imported at top level; for `from A import B` A and A.B, as B may be a module."""
+def _list_imports(module_text: str, package_name: str) -> Iterator[str]:
+    """Yield the names of the modules that a module imports at top level.
+
+    `from A import B` gives A and A.B, because B may be a module.
+    """
     for node in _parse_module(module_text).body:
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
-            parents = package.split(".")[: len(package.split(".")) - node.level + 1] if node.level else []
+            parents = (
+                package_name.split(".")[: len(package_name.split(".")) - node.level + 1] if node.level else []
+            )
             module = ".".join([*parents, *([node.module] if node.module else [])])
             yield module
             yield from (f"{module}.{alias.name}" for alias in node.names)

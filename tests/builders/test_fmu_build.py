@@ -80,7 +80,7 @@ def test_fixed_parameters_run_as_tunable_ones(tmp_path: Path, native: Path, fmus
             assert validate_fmu(str(path)) == []
             variables = read_model_description(str(path)).modelVariables
             assert {v.variability for v in variables if v.causality == "parameter"} == {said}
-            found[said, version] = ramp.run_ramp(path, "f", 1e3, 250.0, {"e": 0.3}).format_csv()
+            found[said, version] = ramp.run_ramp(path, "f", 1e3, 250.0, {"e": 0.3}).format_time_series_csv()
     assert len({found[said, "fmi2"] for said in ("fixed", "tunable")}) == 1
     for version in FLAVOUR_BUILDERS:
         assert found["fixed", version] == found["tunable", version]
@@ -95,7 +95,7 @@ def test_the_command_builds_what_it_is_asked_for(tmp_path: Path, gear_file: Path
     assert [p for p in everything(out) if p.is_file()] == [built]
     start = {v.name: v.start for v in read_model_description(str(built)).modelVariables}
     assert float(start["e"]) == 0.3
-    assert ramp.run_ramp(built, "f", 100.0, 100.0).columns["K_N"][-1] > 0.0
+    assert ramp.run_ramp(built, "f", 100.0, 100.0).variable_columns["K_N"][-1] > 0.0
 
 
 def test_a_second_build_says_what_it_replaces(tmp_path: Path, capsys: Capture) -> None:
@@ -153,7 +153,7 @@ def test_an_fmu_starts_with_the_inputs_of_its_parameter_file(tmp_path: Path) -> 
         assert start == {v.name: file.start_value(v.name) for v in model.inputs}
         assert start["preload"] == 9e3
         for settings, expected in (({}, float(loaded["K_zz"])), ({"preload": 0.0}, 0.0)):
-            found = ramp.run_ramp(path, "s_rel_z", 1e-9, 1e-9, settings).columns["K_zz"][0]
+            found = ramp.run_ramp(path, "s_rel_z", 1e-9, 1e-9, settings).variable_columns["K_zz"][0]
             assert found == pytest.approx(expected, rel=1e-10)  # as C and Python agree elsewhere
     with zipfile.ZipFile(tmp_path / "python" / f"{model.name}.fmu") as archive:
         for owner, file in (("jointfmu", "license"), ("NTNU", "pythonfmu")):
@@ -304,7 +304,7 @@ def test_a_python_fmu_without_its_libraries_is_refused(
     assert not (tmp_path / "out").exists()
 
 
-def test_ctrl_c_is_heard_after_what_swallows_it(
+def test_ctrl_c_ends_a_build_after_code_that_swallows_it(
     tmp_path: Path, enter: Enter, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     enter(environment(JOINTFMU_CACHE=str(tmp_path / "nothing kept")))
@@ -314,7 +314,7 @@ def test_ctrl_c_is_heard_after_what_swallows_it(
             signal.raise_signal(signal.SIGINT)
         return {}
 
-    monkeypatch.setattr(generate, "generate_code", swallowing)
+    monkeypatch.setattr(generate, "generate_sources_without_data", swallowing)
     with pytest.raises(KeyboardInterrupt):
         build_fmus(["GearContact"], ["fmi3"], None, tmp_path / "new")
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
@@ -416,19 +416,21 @@ def job(tmp_path_factory: pytest.TempPathFactory, fmus: Path, native: Path, syst
             copy(path, target)
         return [target for _, target in new]
 
-    def built(names: Sequence[str], flavours: Sequence[str], file: object, out: Path, pool: Executor) -> Any:
+    def built(
+        names: Sequence[str], flavours: Sequence[str], file: object, out: Path, process_pool: Executor
+    ) -> Any:
         assert (names, flavours, file) == ([], [*FLAVOUR_BUILDERS], None)
         folders = {"python": fmus} | {version: native / version for version in VERSIONS}
         return copied((folders[f] / f"{name}.fmu" for f in flavours for name in NAMES), out)
 
-    def built_systems(out: Path, build_joints: bool, pool: Executor) -> list[Path]:
+    def built_systems(out: Path, build_joints: bool, process_pool: Executor) -> list[Path]:
         assert not build_joints
         made = [path for suffix in ("fmu", "ssp") for path in copied(system_files.glob(f"*/*.{suffix}"), out)]
         return [path for path in made if "_drive" not in path.stem or path.stem.endswith(PROVED_DRIVES)]
 
     with pytest.MonkeyPatch.context() as patch, redirect_stdout(io.StringIO()) as out:
         patch.setattr(pipeline, "build_fmus", built)
-        patch.setattr(pipeline, "build_systems", built_systems)
+        patch.setattr(pipeline, "build_system_archives", built_systems)
         outcome = pipeline.run_pipeline(folder)
         assert pipeline.print_summary(outcome, folder) == 0, out.getvalue()
     return Job(folder, out.getvalue(), outcome)
@@ -472,7 +474,7 @@ def test_the_main_job_builds_checks_and_reports(job: Job) -> None:
     assert [x for x in links.loaded if not x.startswith(("#", "data:"))] == []
     assert [name for name in NAMES if name not in page] == []
     # the command, the job and the page count alike
-    counted = validation.format_summary(validation.validate())
+    counted = validation.format_validation_summary(validation.validate_published_numbers())
     assert f"; {counted}; " in out
     assert f"<p>{counted}.</p>" in page
 
@@ -507,22 +509,28 @@ def test_the_report_can_be_read_on_a_phone(job: Job) -> None:
 def test_the_main_job_proves_every_fmu(job: Job) -> None:
     """The proof covers all flavours, partners and drives of systems, with all experiments in all
     interfaces."""
-    proofs = {pipeline.report_name(proof.fmu): proof for proof in job.outcome.proofs}
+    proofs = {pipeline.report_name_of_fmu(proof.fmu_path): proof for proof in job.outcome.fmu_proofs}
     flavours = {f"{flavour}/{name}" for flavour in FLAVOUR_BUILDERS for name in NAMES}
     partners = {f"{version}/{name}" for version in VERSIONS for name in PARTNERS}
     assert flavours | partners < proofs.keys()
     for name, proof in proofs.items():
-        assert (proof.importer, proof.failures, proof.compared_start_value_count > 0) == ("fmpy", [], True), (
-            name
-        )
-        assert [*proof.interfaces] == (BOTH[:1] if name.startswith("python/") else BOTH), name
-        runs = [(one.experiment.name, one.interface) for one in proof.outcomes if one.interface]
+        assert (proof.importer_name, proof.failure_messages, proof.compared_start_value_count > 0) == (
+            "fmpy",
+            [],
+            True,
+        ), name
+        assert [*proof.executed_interfaces] == (BOTH[:1] if name.startswith("python/") else BOTH), name
+        runs = [
+            (one.experiment.experiment_name, one.fmi_interface)
+            for one in proof.experiment_outcomes
+            if one.fmi_interface
+        ]
         names = dict.fromkeys(one for one, _ in runs)
-        assert runs == [(one, interface) for one in names for interface in proof.interfaces], name
+        assert runs == [(one, interface) for one in names for interface in proof.executed_interfaces], name
         assert proof.worst_point is not None
-        assert proof.worst_point.error_ratio <= MEASURED, name
+        assert proof.worst_point.error_over_tolerance <= MEASURED, name
         if name in flavours:
-            purposes = {one.experiment.purpose for one in proof.outcomes}
+            purposes = {one.experiment.experiment_purpose for one in proof.experiment_outcomes}
             assert purposes == {"smoke-test", "validation", "uncertainty-analysis"}, name
 
 
@@ -534,8 +542,8 @@ def test_the_main_job_has_resonance_and_decay_of_the_working_point(job: Job) -> 
         frequencies = [r.frequency for r in found[name]]
         assert frequencies == sorted(frequencies)
         assert frequencies[-1] / frequencies[0] == pytest.approx(most, abs=0.02)
-    assert {*found} == {*job.outcome.decays}
-    for (one,) in job.outcome.decays.values():
+    assert {*found} == {*job.outcome.free_decays}
+    for (one,) in job.outcome.free_decays.values():
         assert one.amplitude[0] > 10.0 * one.amplitude[-1]
         assert one.frequency[0] < 0.95 * one.frequency[-1]
         assert one.damping[0] > 3.0 * one.damping[-1]
@@ -556,10 +564,10 @@ def test_the_main_job_fails_when_a_check_or_a_proof_misses(job: Job, tmp_path: P
     problems, proof = pipeline._validate_and_prove(path)
     found = [
         replace(c, deviation=0.01) if c.tolerance == checks.INTEGRATION_TOLERANCE else c
-        for c in job.outcome.checks
-        if c.fmu in NAMES
+        for c in job.outcome.numerical_checks
+        if c.fmu_name in NAMES
     ]
-    outcome = replace(job.outcome, problems=problems, proofs=[proof], checks=found)
+    outcome = replace(job.outcome, fmu_problems=problems, fmu_proofs=[proof], numerical_checks=found)
     assert pipeline.print_summary(outcome, tmp_path) == 1
     # both interfaces of the FMU, and an integral of each ramp
     missed = capsys.readouterr().out.partition(f"missed: {2 + len(NAMES)}\n")[2].splitlines()

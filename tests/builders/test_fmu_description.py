@@ -136,7 +136,7 @@ def test_base_units_and_display_factors_say_what_the_names_say(root: Any) -> Non
     ("fmu_name", "variable", "shown"),
     [(name, *shown) for name, case in CASES.items() for shown in case.description.shown.items()],
 )
-def test_people_see_the_units_they_know(fmus: Path, fmu_name: str, variable: str, shown: str) -> None:
+def test_display_units_are_common_units(fmus: Path, fmu_name: str, variable: str, shown: str) -> None:
     found = {v.name: v for v in fmpy.read_model_description(str(fmus / f"{fmu_name}.fmu")).modelVariables}
     assert found[variable].displayUnit == shown
 
@@ -216,7 +216,7 @@ def test_the_default_experiment_is_the_load_ramp_one_step_per_second(fmus: Path,
     assert ramp.input_name in CASES[name].description.inputs
 
 
-def test_what_the_fmu_can_do(root: Any, name: str) -> None:
+def test_the_description_declares_the_capabilities_of_the_fmu(root: Any, name: str) -> None:
     flags = root.find("CoSimulation").attrib
     expected = {
         "modelIdentifier": name,

@@ -66,7 +66,7 @@ def test_messages_go_to_the_instance_that_logged_them(fmu: Host) -> None:
 
 
 @pytest.mark.parametrize("name", ["GearContact", "BoltedJoint"])
-def test_instances_come_and_go(fmus: Path, name: str) -> None:
+def test_instances_can_be_made_and_freed_repeatedly(fmus: Path, name: str) -> None:
     bystander = Fmu(fmus / f"{name}.fmu").start()
     # numpy sums in another order where memory is aligned otherwise
     expected = [pytest.approx(row, rel=1e-14) for row in trace(bystander, name, 2)]
@@ -178,7 +178,7 @@ def test_one_after_another_in_one_process_too(
     fmus: Path, other_parameters: Path, doubled_sources: Path
 ) -> None:
     def stiffness(folder: Path) -> float:
-        return float(ramp.run_ramp(folder / "GearContact.fmu", "f", 900.0, 900.0).columns["K_N"][-1])
+        return float(ramp.run_ramp(folder / "GearContact.fmu", "f", 900.0, 900.0).variable_columns["K_N"][-1])
 
     first = [stiffness(folder) for folder in (fmus, other_parameters, doubled_sources)]
     assert first[2] == 2.0 * first[0]

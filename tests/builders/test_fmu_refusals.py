@@ -104,7 +104,7 @@ def test_an_absurd_value_in_range_is_refused_by_name_or_gives_numbers(
     try:
         instance.start({parameter: value} | GOOD[name])
     except FMICallException:
-        (error,) = [m.text for m in instance.messages if m.status == 3]
+        (error,) = [m.message_text for m in instance.messages if m.fmi_status == 3]
         assert parameter.split(".")[-1] in error
     else:
         assert all(math.isfinite(x) for x in instance.get().values())
@@ -284,7 +284,7 @@ def test_beyond_the_table_the_last_tangent_continues_with_one_warning(
     assert text in warning
     assert " is outside " in warning
     assert "outside the tabulated law, the curve continues with its last tangent" in warning
-    assert not [m for m in instance.messages if m.status > 1]
+    assert not [m for m in instance.messages if m.fmi_status > 1]
     assert all(math.isfinite(v) for f in found for v in f.values())
     y = [f[answer] for f in found]
     # a straight line: three points, to round-off of values much larger than their difference
@@ -308,7 +308,7 @@ def test_the_negative_end_of_the_table_warns_too(fmu: Host) -> None:
     assert "tau = -100 N.m is outside [-30, 30] N.m" in compliance.warnings[0]
 
 
-def test_a_pulled_gear_is_apart_and_says_so_once(fmu: Host) -> None:
+def test_separated_teeth_carry_no_force_and_warn_once(fmu: Host) -> None:
     instance = fmu("GearContact").start({"f": 900.0})
     for f in (-5.0, -7.0):
         assert list(instance.at({"f": f}).values()) == [0.0] * 4
@@ -479,6 +479,14 @@ def test_a_ramp_into_bad_values_names_them(fmus: Path, capsys: pytest.CaptureFix
     path = fmus / "BoltedJoint.fmu"
     line = refused_line(capsys, "ramp", path, "--input", "preload", "--to", "-100", "--step", "-10")
     assert "preload = -10 N is outside [0, inf)" in line
+
+
+def test_an_error_is_named_not_the_warning_before_it(fmus: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """At 0 K, the start of the ramp, the FMU warns of a lost start value; at -5 K it refuses the input."""
+    path = fmus / "BoltedJoint.fmu"
+    line = refused_line(capsys, "ramp", path, "--input", "temperature", "--to", "-10", "--step", "-5")
+    assert "temperature = -5 K is outside [0, inf)" in line
+    assert "start value" not in line
 
 
 def test_json_prints_one_object_and_a_warning_goes_to_standard_error(

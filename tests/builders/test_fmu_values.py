@@ -111,38 +111,38 @@ def test_ten_times_larger_steps_meet_the_same_points(fmus: Path, name: str) -> N
     fine, coarse = (
         ramp.run_ramp(path, r.input_name, r.end_value, r.value_step * factor) for factor in (1.0, 10.0)
     )
-    assert not fine.messages
-    for column, values in coarse.columns.items():
+    assert not fine.log_messages
+    for column, values in coarse.variable_columns.items():
         # nothing depends on the way there; only the points differ by round-off
-        np.testing.assert_allclose(values, fine.columns[column][::10], rtol=1e-9, atol=1e-15)
+        np.testing.assert_allclose(values, fine.variable_columns[column][::10], rtol=1e-9, atol=1e-15)
 
 
 def test_a_partial_last_step_ends_exactly_where_asked(fmus: Path) -> None:
     path = fmus / "HarmonicDriveCompliance.fmu"
     found = ramp.run_ramp(path, "tau", -1.0, -0.3)
-    assert found.columns["tau"] == pytest.approx([0.0, -0.3, -0.6, -0.9, -1.0], rel=SAME)
+    assert found.variable_columns["tau"] == pytest.approx([0.0, -0.3, -0.6, -0.9, -1.0], rel=SAME)
     whole = ramp.run_ramp(path, "tau", -1.0, -1.0)
-    assert found.columns["phi_rel"][-1] == whole.columns["phi_rel"][-1]
+    assert found.variable_columns["phi_rel"][-1] == whole.variable_columns["phi_rel"][-1]
 
 
 def test_a_ramp_takes_settings_of_parameters_and_inputs(fmus: Path) -> None:
     settings = {"surface.D": 1.45, "moment": 300.0}
-    c = ramp.run_ramp(fmus / "BoltedJoint.fmu", "preload", 9e3, 9e3, settings).columns
+    c = ramp.run_ramp(fmus / "BoltedJoint.fmu", "preload", 9e3, 9e3, settings).variable_columns
     inputs = dict.fromkeys(RANGES["BoltedJoint"], 0.0) | {"preload": 9e3, "moment": 300.0}
     expected = law("BoltedJoint", parameters("BoltedJoint", {"surface.D": 1.45}))(inputs)
     assert {k: v[-1] for k, v in c.items() if k != "preload"} == pytest.approx(expected, rel=SAME)
-    gear = ramp.run_ramp(fmus / "GearContact.fmu", "f", 1e3, 1e3, {"rigid_flat": False}).columns
+    gear = ramp.run_ramp(fmus / "GearContact.fmu", "f", 1e3, 1e3, {"rigid_flat": False}).variable_columns
     softer = law("GearContact", parameters("GearContact", {"rigid_flat": False}))({"f": 1e3})
     assert gear["K_N"][-1] == pytest.approx(softer["K_N"], rel=SAME)
 
 
 def test_csv_holds_every_output_with_its_unit_to_the_last_bit(fmus: Path) -> None:
     result = ramp.run_ramp(fmus / "GearContact.fmu", "f", 100.0, 30.0)
-    header, *rows = csv.reader(io.StringIO(result.format_csv()))
+    header, *rows = csv.reader(io.StringIO(result.format_time_series_csv()))
     assert header == ["f [N]", "s_rel [m]", "K_N [N/m]", "A_r [m2]", "elastic_fraction [1]"]
     assert len(rows) == 5
     columns = np.array(rows, dtype=float).T
-    for found, expected in zip(columns, result.columns.values(), strict=True):
+    for found, expected in zip(columns, result.variable_columns.values(), strict=True):
         assert np.array_equal(found, expected)
 
 
@@ -152,7 +152,9 @@ def test_fmpy_simulates_the_load_ramp(fmus: Path, name: str) -> None:
     signal = np.array([(0.0, 0.0), (stop, r.end_value)], dtype=[("time", float), (r.input_name, float)])
     found = simulate_fmu(str(fmus / f"{name}.fmu"), input=signal, stop_time=stop, output_interval=stop / 10)
     assert len(found) == 11
-    at_end = ramp.run_ramp(fmus / f"{name}.fmu", r.input_name, r.end_value * 0.9, r.end_value * 0.9).columns
+    at_end = ramp.run_ramp(
+        fmus / f"{name}.fmu", r.input_name, r.end_value * 0.9, r.end_value * 0.9
+    ).variable_columns
     for output in (v.name for v in MODELS[name].outputs):
         # fmpy holds an input during a step: what it reports at the end was set one step before
         assert found[output][-1] == pytest.approx(at_end[output][-1], rel=1e-9)

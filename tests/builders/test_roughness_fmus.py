@@ -9,7 +9,7 @@ import pytest
 from conftest import Fmu, here_alone, made_once
 from joint_cases import CASES, law, random_inputs
 from jointfmu_fmu_src.building import build_fmus
-from jointfmu_tools.inputs.laws import joints_with_law
+from jointfmu_tools.inputs.laws import find_joints_with_law
 from natives import Host, close
 
 from jointfmu.joints import MODELS
@@ -21,7 +21,7 @@ NAMES = [
     (name, law)
     for law in ("roughness", "table")
     for name, model in MODELS.items()
-    if model.joint in joints_with_law(law)
+    if model.joint in find_joints_with_law(law)
 ]
 each_fmu = pytest.mark.parametrize(("name", "law_name"), NAMES)
 SLOPE = 1e-5

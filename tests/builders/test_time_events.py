@@ -93,7 +93,7 @@ def test_an_event_takes_the_parameters_that_were_changed_in_it(exchange: Make) -
     assert next_event(fmu) == 0.125
 
 
-def test_bodies_announce_none(exchange: Make) -> None:
+def test_bodies_have_no_time_events(exchange: Make) -> None:
     assert next_event(exchange("TranslationalMass").start()) == np.inf
 
 

@@ -52,10 +52,10 @@ def cached(tmp_path: Path, enter: Enter, monkeypatch: pytest.MonkeyPatch) -> Pat
     model = MODEL.with_parameters(file.joint, file.values)
     enter(environment(JOINTFMU_CACHE=str(tmp_path / "cache")))
     monkeypatch.setattr(compiled_models, "SHIPPED_MODEL_FOLDER", tmp_path / "none")
-    place = compiled_models._candidate_paths(
-        compiled_models.compiled_model_name(model, split_parameters(model, file))
+    place = compiled_models._list_candidate_cache_paths(
+        compiled_models.make_compiled_model_file_name(model, split_parameters(model, file))
     )[-1]
-    compiled_models._write_cache_file(place, compiled_models.pack_model(part()))
+    compiled_models._write_cache_file(place, compiled_models.pack_compiled_model(part()))
     enter(missing_package("ziglang"))
     return place
 
@@ -128,8 +128,8 @@ def test_a_missing_cache_is_empty(tmp_path: Path, enter: Enter) -> None:
     "name", ["sources/../../x.c", "sources/a/b.c", "sources//x", "2/../../x", "/x", "other/x"]
 )
 def test_a_member_that_leaves_the_fmu_is_refused(name: str) -> None:
-    buffer = io.BytesIO(lzma.decompress(compiled_models.pack_model(part())))
+    buffer = io.BytesIO(lzma.decompress(compiled_models.pack_compiled_model(part())))
     with tarfile.open(fileobj=buffer, mode="a") as archive:
         archive.addfile(tarfile.TarInfo(name))
-    with pytest.raises(ValueError, match="no part"):
-        compiled_models.unpack_model(lzma.compress(buffer.getvalue()))
+    with pytest.raises(ValueError, match="no compiled model"):
+        compiled_models.unpack_compiled_model(lzma.compress(buffer.getvalue()))

@@ -21,11 +21,11 @@ from jointfmu_tools import cli
         (("new", "harmonic-drive", "--catalog-name=x"), "did you mean --catalogue?"),
     ],
 )
-def test_what_is_nearly_right_is_named(capsys, words, said):
+def test_a_misspelt_name_gets_the_nearest_names(capsys, words, said):
     assert said in refused_line(capsys, *words)
 
 
-def test_what_is_like_nothing_gets_no_guess(capsys):
+def test_a_name_without_similar_names_gets_no_suggestion(capsys):
     assert "did you mean" not in refused_line(capsys, "qqqq")
     assert "did you mean" not in refused_line(capsys, "validate", "--zzz")
 
@@ -45,7 +45,10 @@ def test_a_name_that_no_catalogue_has(capsys):
     [
         ("law roughness --pressure 1e6 --set Ra1=0.8 Ra2=0.8e-6", "Ra1 = 0.8 m is outside (0, 0.0001]"),
         ("new bolted-joint {} --grip 40 --Ra 800", "plausible are 0.005 to 100 um; if it is in nm"),
-        ("new bolted-joint {} --grip 4000 --Ra 0.8", "--grip = 4000 mm is outside (0, 600] mm: 50 times M12"),
+        (
+            "new bolted-joint {} --grip 4000 --Ra 0.8",
+            "--grip = 4000 mm is outside (0, 600] mm: 50 times the diameter of M12",
+        ),
     ],
 )
 def test_what_is_in_another_unit_is_refused_by_what_is_possible(capsys, words, said):

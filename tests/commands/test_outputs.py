@@ -76,9 +76,9 @@ def test_an_output_that_is_an_input_is_refused(tmp_path, enter, capsys, prog, na
     enter(chdir(tmp_path))
     source = Path("input.toml")
     source.write_text("precious")
-    os.link(source, "hard" + kind.endings[0])
-    os.symlink(source, "soft" + kind.endings[0])
-    for path in ("input.toml", "hard" + kind.endings[0], "soft" + kind.endings[0]):
+    os.link(source, "hard" + kind.file_name_endings[0])
+    os.symlink(source, "soft" + kind.file_name_endings[0])
+    for path in ("input.toml", "hard" + kind.file_name_endings[0], "soft" + kind.file_name_endings[0]):
         line = words(prog, name, path)
         assert "is also an input of this command" in refused_line(capsys, *line, "--force")
     assert source.read_text() == "precious"
@@ -88,13 +88,13 @@ def test_an_output_that_is_an_input_is_refused(tmp_path, enter, capsys, prog, na
 def test_a_foreign_file_is_not_replaced(tmp_path, enter, capsys, prog, name, kind):
     enter(chdir(tmp_path))
     Path("input.toml").write_text("x")
-    path = Path(f"mine{kind.endings[0]}")
+    path = Path(f"mine{kind.file_name_endings[0]}")
     path.write_text("measured by me\n")
     assert "(--force)" in refused_line(capsys, *words(prog, name, path))
     other = Path("script.py")
     other.write_text("print()\n")
     said = refused_line(capsys, *words(prog, name, other), "--force")
-    assert "another kind" in said or "is not a picture" in said
+    assert "another kind" in said or "is not that of a picture" in said
     assert (path.read_text(), other.read_text()) == ("measured by me\n", "print()\n")
 
 

@@ -133,7 +133,7 @@ def test_a_second_build_says_what_it_replaces(tmp_path: Path, capsys: pytest.Cap
 
 
 @pytest.mark.parametrize("to", ["1e300", "-1e13"])
-def test_a_ramp_to_what_cannot_be(to: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+def test_a_ramp_to_impossible_values_is_refused(to: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     """An impossible ramp is refused before the FMU is opened."""
     line = refused_line(capsys, "ramp", tmp_path / "none.fmu", "--input", "tau", "--to", to, "--step", to)
     assert f"to = {float(to):g} is outside [-1e+12, 1e+12] (SI)" in line

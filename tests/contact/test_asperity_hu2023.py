@@ -206,11 +206,11 @@ def test_lower_bound_of_the_mean_pressure():
 
 def test_kogut_etsion_products():
     # errata: six and seven digits
-    first = kogut_etsion.eliminate_deformation(kogut_etsion.FIRST_STAGE)
-    second = kogut_etsion.eliminate_deformation(kogut_etsion.SECOND_STAGE)
+    first = kogut_etsion.eliminate_deformation(kogut_etsion.FIRST_ELASTIC_PLASTIC_STAGE)
+    second = kogut_etsion.eliminate_deformation(kogut_etsion.SECOND_ELASTIC_PLASTIC_STAGE)
     coefficients = (first.load_factor, second.load_factor, first.stiffness_factor, second.stiffness_factor)
     assert coefficients == pytest.approx((1.12816, 1.49880, 1.50815, 1.79349), abs=5e-6)
-    ends = (kogut_etsion.SECOND_STAGE_AREA_OVER_FIRST_YIELD, kogut_etsion.PLASTIC_AREA_OVER_FIRST_YIELD)
+    ends = (kogut_etsion.SECOND_STAGE_OVER_YIELD_AREA, kogut_etsion.FULL_PLASTIC_OVER_YIELD_AREA)
     assert ends == pytest.approx((7.1197, 205.3827), abs=5e-5)
     # the exponents of Eqs. 13, 14, 31, 32
     assert (first.load_exponent, second.load_exponent) == pytest.approx((1.2544, 1.1021), abs=5e-5)
@@ -220,7 +220,7 @@ def test_kogut_etsion_products():
 def test_mean_pressure_at_the_onset_of_full_plasticity():
     law = changed(HU, {"side1.nu": 0.3})
     edge = log(hu2023.critical_area(law) / law.surface.s_min)
-    t = edge + log(kogut_etsion.PLASTIC_AREA_OVER_FIRST_YIELD) - 1e-9
+    t = edge + log(kogut_etsion.FULL_PLASTIC_OVER_YIELD_AREA) - 1e-9
     load = sum(float(term.evaluate_spot(t)) for term in law.spot_distribution().regime_terms["load"])
     mean = load / (law.surface.s_min * exp(t))
     assert mean / law.hardness == pytest.approx(0.993, abs=5e-4)  # three digits

@@ -13,7 +13,7 @@ from jointfmu.contact.laws import persson, roughness
 from jointfmu.contact.laws.roughness import FEW_SPOTS_STIFFNESS_FACTOR, RoughnessLaw
 from jointfmu.contact.surface import ElasticConstants
 from jointfmu.joints import KINDS
-from jointfmu.mechanics.curve import MAX_ERROR, tabulate_approach
+from jointfmu.mechanics.curve import MAX_INTERPOLATION_ERROR, tabulate_approach
 from jointfmu.parameters import load_default
 
 STEEL = ElasticConstants(E=2.1e11, nu=0.3)
@@ -121,7 +121,7 @@ def diffused(x, t, walls=200):
 @pytest.mark.parametrize("x", [0.01, 0.2, 0.7])
 @pytest.mark.parametrize("t", [0.01, 0.199, 0.201, 1.0])
 def test_the_real_area_is_perssons_with_a_wall_at_the_hardness(x, t):
-    elastic, plastic = persson.contact_area_shares(x * 2e9, 2e9, np.sqrt(t) * 2e9)
+    elastic, plastic = persson.elastic_and_plastic_area_shares(x * 2e9, 2e9, np.sqrt(t) * 2e9)
     share, load = diffused(x, t)
     assert elastic == pytest.approx(share, abs=1e-4)  # of the grid
     assert plastic == pytest.approx(x - load, abs=1e-4)
@@ -156,9 +156,9 @@ def test_the_first_loading_is_softer_where_spots_flow():
 # In the machinery
 
 
-def test_the_law_knows_no_largest_spot(capsys):
+def test_the_law_roughness_has_no_largest_spot(capsys):
     assert np.isnan(evaluate_at_pressure(GROUND, 1e6)["largest_spot"])
-    with pytest.raises(ValueError, match="has no largest spot; state a pressure"):
+    with pytest.raises(ValueError, match="has no largest spot with an area; state a pressure"):
         evaluate_at_largest_spot(GROUND, 1e-9)
     assert main(["law", "roughness", "--largest-spot", "1e-9"]) == 2
     assert capsys.readouterr().err.count("\n") == 1
@@ -175,7 +175,7 @@ def test_default_files_have_the_law(joint):
 @pytest.mark.parametrize("longest_wave", [1e-5, 3e-2])
 def test_the_curve_is_monotone_and_closes(hurst, longest_wave):
     curve = tabulate_approach(changed(hurst=hurst, longest_wave=longest_wave))
-    assert curve.interpolation_error <= MAX_ERROR
+    assert curve.interpolation_error <= MAX_INTERPOLATION_ERROR
     assert np.all(np.diff(curve.load) > 0.0)
     assert curve.load[0] == 0.0
     x = np.linspace(curve.displacement[0], 0.0, 2000)

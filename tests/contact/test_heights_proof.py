@@ -20,7 +20,9 @@ def test_pressure_over_decay_length_is_the_stiffness_of_boundary_elements(kind):
     limit = 1.7 if kind == BARE_GROOVES else 1.5
     z = KINDS[kind](70_000, 128)
     contacts = press(z, slope(z) * LOADS)
-    law = BearingCurve.of_sample(sample_periodic(z)).stiffness(np.array([c.p for c in contacts]), 1.0)
+    law = BearingCurve.from_height_sample(sample_periodic(z)).normal_stiffness(
+        np.array([c.p for c in contacts]), 1.0
+    )
     ratio = law / [c.stiffness for c in contacts]
     assert np.all((ratio > 1.0 / limit) & (ratio < limit)), ratio
 
@@ -29,22 +31,28 @@ def test_pressure_over_decay_length_is_the_stiffness_of_boundary_elements(kind):
 def test_solved_scan_is_that_of_another_boundary_element_code(heights):
     """In elastic contact, ContactMechanics (the product's solver) agrees with tamaas."""
     n, side, modulus, height = 64, 1e-3, 1e11, 1e-6
-    scan = ArealMap(z=height * heights, dx=side / n, dy=side / n, name="scan")
+    scan = ArealMap(z=height * heights, dx=side / n, dy=side / n, scan_name="scan")
     contacts = press(heights, slope(heights) * LOADS)
     p = np.array([c.p for c in contacts]) * modulus * height / side
-    found = [k for k, *_ in solve._press(scan, p, modulus, 1e30, iter(range(9)))]
+    found = [k for k, *_ in solve._press_on_half_space(scan, p, modulus, 1e30, iter(range(9)))]
     assert found == pytest.approx([c.stiffness * modulus / side for c in contacts], rel=0.01)
 
 
 def test_hardness_limits_the_pressure_and_stiffens_small_motions():
     n, side = 128, 1e-3
-    scan = ArealMap(z=0.5e-6 * gaussian(6, n), dx=side / n, dy=side / n, name="scan")
+    scan = ArealMap(z=0.5e-6 * gaussian(6, n), dx=side / n, dy=side / n, scan_name="scan")
     soft, hard = (solve.solve_stiffness(scan, 1e11, hardness) for hardness in (2e9, 1e30))
-    common, i, j = np.intersect1d(soft.pressure, hard.pressure, return_indices=True)
+    common, i, j = np.intersect1d(soft.nominal_pressure, hard.nominal_pressure, return_indices=True)
     assert common.size >= 3
     assert np.all(hard.plastic_area_share == 0.0)
     assert np.all(soft.plastic_area_share > 0.1)
-    ratio = soft.stiffness[i] / hard.stiffness[j]
+    ratio = soft.normal_stiffness[i] / hard.normal_stiffness[j]
     assert np.all(ratio > 0.999)
     assert ratio[-1] > 1.2
-    assert hard.low <= soft.low < 1.0 < soft.high <= hard.high
+    assert (
+        hard.min_sub_area_over_mean_stiffness
+        <= soft.min_sub_area_over_mean_stiffness
+        < 1.0
+        < soft.max_sub_area_over_mean_stiffness
+        <= hard.max_sub_area_over_mean_stiffness
+    )

@@ -11,9 +11,9 @@ from scipy.integrate import quad
 from scipy.special import exprel as scipy_exprel
 
 from jointfmu.contact.powerlaw import (
+    PartialSlipTerm,
     PowerTerm,
-    SlipTerm,
-    SmoothTerm,
+    SmoothFunctionTerm,
     SpotDistribution,
     exp_integral,
     exprel,
@@ -144,7 +144,7 @@ def bump(t):
 
 @given(m=st.floats(0.1, 1.0), lower=points, span=st.floats(0.01, 12.0), u=points)
 def test_smooth(m, lower, span, u):
-    term = SmoothTerm(bump, lower, lower + span)
+    term = SmoothFunctionTerm(bump, lower, lower + span)
     end = min(lower + span, u)
     expected = reference(lambda t: bump(t) * np.exp(-m * t), lower, end) if end > lower else 0.0
     # poles of the bump at +-10.5 i: the 32-point rule has converged (error 3.4^-64); quadrature 1e-12
@@ -167,7 +167,7 @@ def slip_value(t, p, h, q):
 )
 def test_slip(m, q, onset, lower, span, u):
     h = np.exp(q * onset)  # 1 - h exp(-q t) changes sign at t = onset
-    term = SlipTerm(3.0, 0.5, h, q, lower, lower + span)
+    term = PartialSlipTerm(3.0, 0.5, h, q, lower, lower + span)
     end = min(lower + span, u)
     start = max(lower, onset)
 
@@ -188,7 +188,7 @@ def test_slip(m, q, onset, lower, span, u):
 
 
 def test_slip_is_zero_when_every_spot_slips():
-    term = SlipTerm(3.0, 0.5, np.exp(0.5 * 9.0), 0.5, 0.0, 8.0)  # onset 9 above the regime
+    term = PartialSlipTerm(3.0, 0.5, np.exp(0.5 * 9.0), 0.5, 0.0, 8.0)  # onset 9 above the regime
     assert term.integrate_over_spots(0.7, 20.0) == 0.0
     assert term.evaluate_spot(7.0) == 0.0
 
@@ -196,11 +196,11 @@ def test_slip_is_zero_when_every_spot_slips():
 TERMS = {
     "load": (
         PowerTerm(2.0, 1.0, upper_log_area=-1.0),
-        SmoothTerm(bump, -1.0, 0.0),
+        SmoothFunctionTerm(bump, -1.0, 0.0),
         PowerTerm(3.0, 0.79, 0.0),
     ),
     "singular": (PowerTerm(2.0, 0.71, -3.0, 2.0),),  # p = m
-    "slip": (SlipTerm(3.0, 0.5, np.exp(0.5 * 0.7), 0.5, 0.0, 4.0),),
+    "slip": (PartialSlipTerm(3.0, 0.5, np.exp(0.5 * 0.7), 0.5, 0.0, 4.0),),
 }
 SPOTS = SpotDistribution(reference_area=1e-9, size_exponent=0.71, size_prefactor=1.3, regime_terms=TERMS)
 EDGES = (-3.0, -1.0, 0.0, 0.7, 2.0, 4.0)

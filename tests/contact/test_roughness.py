@@ -7,8 +7,8 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
-from jointfmu_tools.inputs.fields.joint_parameters import insert_field
-from jointfmu_tools.inputs.fields.nodal_result import ContactField
+from jointfmu_tools.inputs.fields.joint_parameters import insert_pressure_field
+from jointfmu_tools.inputs.fields.nodal_result import ContactPressureField
 
 from jointfmu.contact import roughness
 from jointfmu.joints import KINDS
@@ -89,7 +89,7 @@ def test_every_joint_may_state_it(joint):
     assert (again.roughness, again.sources[file.heights_prefix + "h"]) == ({"h": 2e-6}, "scan")
 
 
-def test_what_is_new_replaces_what_spoke_of_the_same_side():
+def test_a_new_roughness_replaces_the_old_one_of_the_same_side():
     file = load_default("gear_contact").with_roughness({"Ra1": 1e-6, "Ra2": 2e-6}, "user", "drawing")
     one = file.with_roughness({"Rq1": 3e-6}, "derived", "scan")
     assert one.roughness == {"Ra2": 2e-6, "Rq1": 3e-6}
@@ -151,7 +151,7 @@ def test_a_roughness_acts_or_is_refused(tmp_path):
     path = tmp_path / "joint.toml"
     path.write_text(format_parameter_file(load_default("gear_contact")) + SECTION + entry("Ra1", 0.8e-6))
     with pytest.raises(
-        ValueError, match=r"joint\.toml: \[roughness\] does not act on law = 'yu2022'; .* \[comparison\]"
+        ValueError, match=r"joint\.toml: \[roughness\] has no effect on law = 'yu2022', .* \[comparison\]"
     ):
         load_parameter_file(path)
 
@@ -161,8 +161,8 @@ def test_a_field_keeps_it():
     file = load_default("bolted_joint")
     shape = pressure_distribution(file.values.pattern)
     pressure = preload_pressure(file.values, shape, 9e3, 0.0)
-    field = ContactField(shape.area_share * file.values.A_0, shape.position, pressure)
-    made, _ = insert_field(file, field, 9e3, "test")
+    field = ContactPressureField(shape.area_share * file.values.A_0, shape.position, pressure)
+    made, _ = insert_pressure_field(file, field, 9e3, "test")
     assert made.roughness == file.roughness
     assert made.sources["comparison.Ra1"] == file.sources["comparison.Ra1"]
 

@@ -48,7 +48,9 @@ def test_points_of_a_power_law_give_this_power_law(exponent, count):
     np.testing.assert_allclose(evaluate_at_pressure(law, p)["K_N"] / law.A_0, stiffness(p), rtol=64 * EPS)
     curve = tabulate_approach(law)
     delta = curve.inverse(p)
-    np.testing.assert_allclose(np.diff(delta), np.diff(approach(p)), rtol=1e-8)  # MAX_ERROR of a curve
+    np.testing.assert_allclose(
+        np.diff(delta), np.diff(approach(p)), rtol=1e-8
+    )  # MAX_INTERPOLATION_ERROR of a curve
     np.testing.assert_allclose(curve.derivatives(delta, 1)[1], stiffness(p), rtol=1e-8)
     if exponent < 1.0:  # from first contact; the closing is short
         assert delta[4] - curve.displacement[0] == pytest.approx(approach(p[4]), rel=5e-3)
@@ -165,5 +167,5 @@ def test_all_tables_share_the_compiled_code_of_an_fmu():
         values = {"table.pressure": tuple(points.tolist()), "table.stiffness": tuple((1e6 * points).tolist())}
         splits.append(split_parameters(model, file.with_values(values, "user", "test")))
     assert splits[0].code_structure_key == splits[1].code_structure_key
-    assert splits[0].data_values != splits[1].data_values
+    assert splits[0].data_struct_values != splits[1].data_struct_values
     assert "table.factor" in splits[0].variable_names

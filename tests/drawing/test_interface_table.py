@@ -76,7 +76,7 @@ def test_a_roughness_beside_the_table_judges_it_and_sets_the_embedding(table, ma
 @pytest.mark.parametrize(
     ("lines", "message"),
     [
-        ((HEAD, "1, 1.2"), "has 1 points, at least 2 are needed"),
+        ((HEAD, "1, 1.2"), "has 1 rows of numbers, at least 2 are needed"),
         (
             ("pressure, stiffness [MPa/um]", *POINTS),
             "column 'pressure' has no unit, expected e.g. pressure [Pa]",
@@ -109,4 +109,4 @@ def test_a_wrong_file_is_refused_in_one_line(lines, message, table, capsys):
 
 def test_a_law_beside_the_table_is_refused(table, capsys):
     assert main(["new", *PLATE, "--law", "zhao2018", "--interface-table", table(HEAD, *POINTS)]) == 2
-    assert "--law zhao2018 with --interface-table; state one of them" in capsys.readouterr().err
+    assert "--law zhao2018 and --interface-table both state the law" in capsys.readouterr().err

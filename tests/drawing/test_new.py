@@ -10,13 +10,18 @@ from clients import needs
 from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.common.joint_parts import load_tool_module
-from jointfmu_tools.inputs.drawing.quantities import QUANTITIES, parse_quantity, parse_value, parse_values
+from jointfmu_tools.inputs.drawing.quantities import (
+    QUANTITIES,
+    parse_quantity,
+    parse_quantity_value,
+    parse_quantity_values,
+)
 from jointfmu_tools.inputs.drawing.reading import parse_number, parse_numbers
 from jointfmu_tools.inputs.drawing.tables import (
     MATERIAL_COLUMNS,
-    find_row,
+    find_table_row,
+    read_material_or_finish_table,
     read_property_classes,
-    read_table,
     read_threads,
     read_washers,
 )
@@ -47,7 +52,7 @@ def test_there_are_some():
 )
 def test_the_example_makes_a_file_that_loads(capsys, tmp_path, name):
     path = tmp_path / "joint.toml"
-    words = ["new", name, *shlex.split(NEW[name].example), "--out", path]
+    words = ["new", name, *shlex.split(NEW[name].example_options), "--out", path]
     text = said(capsys, *words).out
     assert text.endswith(f"wrote {path}\n")
     file = load_parameter_file(path)
@@ -71,7 +76,7 @@ def test_the_example_makes_a_file_that_loads(capsys, tmp_path, name):
 
 @pytest.mark.parametrize("name", NEW)
 def test_what_is_required_is_asked_for(capsys, tmp_path, name):
-    options = NEW[name].options
+    options = NEW[name].command_options
     required = [f"--{option.name}" for option in options if option.is_required]
     required = required or [f"--{option.name}" for option in options]  # or one of several ways
     line = refused_line(capsys, "new", name, "--out", tmp_path / "joint.toml")
@@ -81,7 +86,7 @@ def test_what_is_required_is_asked_for(capsys, tmp_path, name):
 
 @pytest.mark.parametrize("name", NEW)
 def test_a_place_that_cannot_be_written_is_refused_first(capsys, tmp_path, name):
-    line = refused_line(capsys, "new", name, *shlex.split(NEW[name].example), "--out", tmp_path)
+    line = refused_line(capsys, "new", name, *shlex.split(NEW[name].example_options), "--out", tmp_path)
     assert "is a folder; expected a file to write" in line
 
 
@@ -90,7 +95,7 @@ def test_the_help_has_every_option_and_an_example(capsys, name):
     with pytest.raises(SystemExit, match="0"):
         cli.main(["new", name, "--help"])
     text = capsys.readouterr().out
-    assert all(f"--{option.name.replace('_', '-')}" in text for option in NEW[name].options)
+    assert all(f"--{option.name.replace('_', '-')}" in text for option in NEW[name].command_options)
     assert f"example: jointfmu new {name}" in " ".join(text.split())
 
 
@@ -108,53 +113,64 @@ def test_tables_are_printed(capsys, name):
 
 
 def test_materials_are_physical_and_have_sources():
-    for material in read_table("materials").values():
-        values = {name: known.value for name, known in material.numbers.items()}
+    for material in read_material_or_finish_table("materials").values():
+        values = {name: known.si_value for name, known in material.sourced_numbers.items()}
         assert values.keys() == MATERIAL_COLUMNS.keys()
         assert 5e10 < values["E"] < 2.5e11
         assert 0.2 < values["nu"] < 0.4
         assert 2000 < values["density"] < 9000
         assert 5e8 < values["H"] < 1e10
-        assert all(known.source for known in material.numbers.values())
-        assert material.numbers["H"].origin == "estimate"  # of one usual state
-    names = [name for found in read_table("materials").values() for name in (found.name, *found.aliases)]
+        assert all(known.value_source for known in material.sourced_numbers.values())
+        assert material.sourced_numbers["H"].value_origin == "estimate"  # of one usual state
+    names = [
+        name
+        for found in read_material_or_finish_table("materials").values()
+        for name in (found.row_name, *found.row_aliases)
+    ]
     assert len(names) == len({name.lower() for name in names})
 
 
 def test_a_finish_is_the_middle_of_its_range():
-    for finish in read_table("finishes").values():
-        Ra, low, high = (finish.numbers[name].value for name in ("Ra", "Ra_low", "Ra_high"))
+    for finish in read_material_or_finish_table("finishes").values():
+        Ra, low, high = (finish.sourced_numbers[name].si_value for name in ("Ra", "Ra_low", "Ra_high"))
         assert pytest.approx(math.sqrt(low * high), rel=1e-3) == Ra
         assert high > low
-        assert 0.0 < finish.numbers["hurst"].value < 1.0
+        assert 0.0 < finish.sourced_numbers["hurst"].si_value < 1.0
 
 
 def test_a_row_is_found_by_any_of_its_names():
     assert (
-        find_row("materials", "Cast-Iron")
-        is find_row("materials", "GG25")
-        is find_row("materials", "cast iron")
+        find_table_row("materials", "Cast-Iron")
+        is find_table_row("materials", "GG25")
+        is find_table_row("materials", "cast iron")
     )
     with pytest.raises(ValueError, match=r"material 'wood' is unknown, allowed are steel, .* new materials"):
-        find_row("materials", "wood")
+        find_table_row("materials", "wood")
     with pytest.raises(ValueError, match="finish 'rough' is unknown"):
-        find_row("finishes", "rough")
+        find_table_row("finishes", "rough")
 
 
 def test_bolts_grow():
     sizes = list(read_threads().values())
-    for column in ("nominal_diameter", "hole", "hexagon", "socket"):
+    for column in (
+        "nominal_diameter",
+        "hole_diameter",
+        "hexagon_bearing_diameter",
+        "socket_bearing_diameter",
+    ):
         values = [getattr(thread, column) for thread in sizes]
         assert values == sorted(values)
     for thread in sizes:
-        assert thread.pitch < thread.nominal_diameter < thread.hole < thread.hexagon < thread.socket
-        assert thread.nominal_diameter == pytest.approx(float(thread.name[1:]) * 1e-3)
-    washers = [read_washers()[thread.name] for thread in sizes]
+        assert thread.pitch < thread.nominal_diameter < thread.hole_diameter
+        assert thread.hole_diameter < thread.hexagon_bearing_diameter < thread.socket_bearing_diameter
+        assert thread.nominal_diameter == pytest.approx(float(thread.thread_name[1:]) * 1e-3)
+    washers = [read_washers()[thread.thread_name] for thread in sizes]
     for column in ("hole_diameter", "outer_diameter", "thickness"):
         values = [getattr(washer, column) for washer in washers]
         assert values == sorted(values)
     for thread, washer in zip(sizes, washers, strict=True):
-        assert thread.nominal_diameter < washer.hole_diameter < thread.socket < washer.outer_diameter
+        assert thread.nominal_diameter < washer.hole_diameter < thread.socket_bearing_diameter
+        assert thread.socket_bearing_diameter < washer.outer_diameter
     for strength in read_property_classes().values():
         assert all(p < y for p, y in zip(strength["proof"], strength["yield"], strict=True))
 
@@ -171,11 +187,11 @@ def test_lengths(text, value):
 
 
 def test_numbers_with_a_sign_between():
-    assert parse_numbers("plate", "200x0.1m", "mm", "m", separator="x", number_count=2) == pytest.approx(
-        [0.2, 0.1]
-    )
     assert parse_numbers(
-        "at", "-80,3e1", "mm", "m", separator=",", number_count=2, lower_bound=None
+        "plate", "200x0.1m", "mm", "m", number_separator="x", expected_number_count=2
+    ) == pytest.approx([0.2, 0.1])
+    assert parse_numbers(
+        "at", "-80,3e1", "mm", "m", number_separator=",", expected_number_count=2, lower_bound=None
     ) == pytest.approx([-0.08, 0.03])
 
 
@@ -191,15 +207,19 @@ def test_bad_numbers_are_refused(text):
 @pytest.mark.parametrize("name", NEW)
 def test_every_number_has_its_quantity(name):
     """Each option whose help states a unit is in the table of quantities, with this unit."""
-    for option in NEW[name].options:
+    for option in NEW[name].command_options:
+        if option.choices:
+            continue  # a word, not a number
+        if option.choices:
+            continue  # a word, not a number
         if unit := re.search(r"\[(1|[A-Za-z][\w./]*)\b[^]]*\]", option.help_text):
             if option.name == "temperature":
                 continue  # has a zero point
-            assert QUANTITIES[option.name].unit == unit[1], option.name
+            assert QUANTITIES[option.name].default_unit == unit[1], option.name
 
 
 def test_all_quantities_are_of_options():
-    assert {*QUANTITIES} <= {option.name for command in NEW.values() for option in command.options}
+    assert {*QUANTITIES} <= {option.name for command in NEW.values() for option in command.command_options}
 
 
 @pytest.mark.parametrize(
@@ -221,7 +241,7 @@ def test_all_quantities_are_of_options():
     ],
 )
 def test_numbers_with_units(option, text, value):
-    assert parse_value(option, text) == pytest.approx(value, rel=1e-12)
+    assert parse_quantity_value(option, text) == pytest.approx(value, rel=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -263,7 +283,7 @@ def test_the_unit_of_a_range_is_of_both_ends():
         ("module", "400", "plausible are 0.1 to 60 mm; if it is in um, write 400um (0.4 mm)"),
         ("pressure_angle", "0.35", "if it is in rad, write 0.35rad (20.05 deg)"),
         ("plate", "100..200", "is a range; expected one number"),
-        ("mu", "0.3..0.1", "is not a range; expected LOW..HIGH"),
+        ("mu", "0.3..0.1", "expected LOW..HIGH, LOW below HIGH"),
         ("mu", "0.1..3", "= '3' is outside (0, 2]: coefficient of friction of metals"),
         ("embedding", "-1", "is outside [0, inf) N: preload loss of a bolt"),
         ("thickness", "0.1", "if it is in m, write 0.1m (100 mm)"),
@@ -282,5 +302,7 @@ def test_a_number_that_is_not_plausible_is_asked_about(option, text, message):
 
 def test_sizes_are_asked_about():
     with pytest.raises(ValueError, match=r"--plate = '0.2' is read as 0.2 mm"):
-        parse_values("plate", "0.2x0.15", separator="x", value_count=2)
-    assert parse_values("plate", "0.2mx0.15m", separator="x", value_count=2) == pytest.approx([0.2, 0.15])
+        parse_quantity_values("plate", "0.2x0.15", number_separator="x", expected_value_count=2)
+    assert parse_quantity_values(
+        "plate", "0.2mx0.15m", number_separator="x", expected_value_count=2
+    ) == pytest.approx([0.2, 0.15])

@@ -131,7 +131,7 @@ E = [
     (("modelica", "springs", "--preload", 9e3), "modelica springs cannot be written; modelica has curve"),
     (
         ("calculix", "springs"),
-        "springs need --preload, the preload of each bolt [N], or --nodes with a pressure",
+        "springs need --preload, the preload of each bolt [N], or --nodes with a column pressure",
     ),
     (("calculix", "springs", "--preload", -1), "preload = -1 N per bolt with moment = 0 N.m is outside"),
     (("calculix", "springs", "--preload", "nan"), "preload = nan N per bolt"),
@@ -153,7 +153,10 @@ E = [
     (("ansys", "springs", "--nodes", "none.csv", "--first", 5, "--first-set", 5), "none.csv: cannot be read"),
     (("ansys", "springs", "--preload", 9e3, "--first", 0), "--first = 0 is outside [1, 10000000]"),
     (("csv", "springs", "--nodes", "own.csv", "--preload", 9e3), "own.csv states the pressures; leave out"),
-    (("modelica", "curve", "--preload", 9e3, "--units", "mm-N-MPa-t"), "a Modelica table is in m-N-Pa-kg"),
+    (
+        ("modelica", "curve", "--preload", 9e3, "--units", "mm-N-MPa-t"),
+        "a Modelica table is always in m-N-Pa-kg",
+    ),
     (("radioss", "springs"), "argument FORMAT: invalid choice: 'radioss'"),
     (("csv", "springs", "--preload", 9e3, "--units", "inch"), "argument --units: invalid choice: 'inch'"),
     (("csv", "contact", "--params", "none.toml"), "none.toml: cannot be read"),

@@ -15,7 +15,7 @@ from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.exchange.export import ansys, aster, keywords, nastran
 from jointfmu_tools.exchange.export.joint_stiffness import JointStiffness
-from jointfmu_tools.exchange.export.placing import AXIS_ORDER, UNIT_SETS, Placement
+from jointfmu_tools.exchange.export.target_model import AXIS_ORDER, UNIT_SETS, TargetModel
 from jointfmu_tools.run.engine import open_joint
 from oracles import calculix
 
@@ -123,8 +123,8 @@ READERS = {
 @pytest.mark.parametrize("form", list(READERS))
 def test_node_moves_by_the_compliance(form, normal, tmp_path):
     write, read = READERS[form]
-    stiffness = JointStiffness.from_tangent(coupled(), POSITIONS)
-    text = write(stiffness, Placement(MM, normal, FIRST, 7), ["about"])
+    stiffness = JointStiffness.from_tangent_stiffness(coupled(), POSITIONS)
+    text = write(stiffness, TargetModel(MM, normal, FIRST, 7), ["about"])
     matrix = read(text, tmp_path)
     assert_moves(matrix, expected_motion(coupled(), POSITIONS, normal), DIGITS.get(form, 1e-8))
 
@@ -142,8 +142,8 @@ def read_bulk_data(text, tmp_path):
 @needs("pyNastran")
 @pytest.mark.parametrize("normal", list(AXIS_ORDER))
 def test_nastran_matrix_is_read_by_pynastran(normal, tmp_path):
-    stiffness = JointStiffness.from_tangent(coupled(), POSITIONS)
-    text = nastran.format_joint_stiffness(stiffness, Placement(MM, normal, FIRST), ["about"])
+    stiffness = JointStiffness.from_tangent_stiffness(coupled(), POSITIONS)
+    text = nastran.format_joint_stiffness(stiffness, TargetModel(MM, normal, FIRST), ["about"])
     model = read_bulk_data(text, tmp_path)
     for label, r in zip((FIRST, FIRST + 1), 1e3 * POSITIONS, strict=True):
         np.testing.assert_allclose(model.nodes[label].xyz, r, rtol=1e-9)
@@ -162,8 +162,8 @@ def test_nastran_matrix_is_read_by_pynastran(normal, tmp_path):
 @pytest.mark.parametrize("positions", [np.zeros((2, 3)), np.array([[0, 0, -0.012], [0, 0, 0.02]])])
 def test_nastran_spring_is_read_by_pynastran(positions, tmp_path):
     K = np.diag([8e9, 7e9, 2e10, 1.2e7, 1.1e7, 1e7])
-    stiffness = JointStiffness.from_tangent(K, positions)
-    text = nastran.format_joint_stiffness(stiffness, Placement(MM, "z", FIRST), ["about"])
+    stiffness = JointStiffness.from_tangent_stiffness(K, positions)
+    text = nastran.format_joint_stiffness(stiffness, TargetModel(MM, "z", FIRST), ["about"])
     model = read_bulk_data(text, tmp_path)
     assert not model.dmig
     bush, grids = model.elements[FIRST], [model.nodes[label].xyz for label in (FIRST, FIRST + 1)]
@@ -178,8 +178,8 @@ def test_nastran_spring_only_where_it_is_exact():
     beside = np.array([[0.001, 0, -0.012], [0.001, 0, 0.02]])
     above = np.array([[0, 0, 0.012], [0, 0, 0.02]])
     for K, positions in ((coupled(), np.zeros((2, 3))), (diagonal, beside), (diagonal, above)):
-        stiffness = JointStiffness.from_tangent(K, positions)
-        text = nastran.format_joint_stiffness(stiffness, Placement(SI), [])
+        stiffness = JointStiffness.from_tangent_stiffness(K, positions)
+        text = nastran.format_joint_stiffness(stiffness, TargetModel(SI), [])
         assert "CBUSH" not in text
         assert "DMIG*" in text
     assert max(map(len, text.splitlines())) <= 80
@@ -209,8 +209,8 @@ U
 @needs("CalculiX")
 @pytest.mark.parametrize("normal", list(AXIS_ORDER))
 def test_calculix_moves_a_node_by_the_compliance(normal, tmp_path):
-    stiffness = JointStiffness.from_tangent(coupled(), POSITIONS)
-    text = keywords.format_coupled_springs(stiffness, Placement(MM, normal, FIRST), ["about"])
+    stiffness = JointStiffness.from_tangent_stiffness(coupled(), POSITIONS)
+    text = keywords.format_coupled_springs(stiffness, TargetModel(MM, normal, FIRST), ["about"])
     (tmp_path / "joint.inp").write_text(text)
     labels = range(FIRST, FIRST + 4)
     (tmp_path / "loaded.inp").write_text(DECK.format(*labels, LOAD))
@@ -238,8 +238,8 @@ BODY = """*NODE, NSET=BODY
 def test_calculix_turns_a_rigid_body(tmp_path):
     """The rotation nodes are those of rigid bodies: a force at a distance from the reference node rotates the
     body."""
-    stiffness = JointStiffness.from_tangent(coupled(), POSITIONS)
-    text = keywords.format_coupled_springs(stiffness, Placement(MM, "z", FIRST), ["about"])
+    stiffness = JointStiffness.from_tangent_stiffness(coupled(), POSITIONS)
+    text = keywords.format_coupled_springs(stiffness, TargetModel(MM, "z", FIRST), ["about"])
     (tmp_path / "joint.inp").write_text(text)
     load = "*INCLUDE, INPUT=joint.inp\n" + BODY
     load += DECK.format(*range(FIRST, FIRST + 4), LOAD).partition("\n")[2].split("*CLOAD")[0]
@@ -259,7 +259,7 @@ def test_comment_states_frame_point_and_state(tmp_path, capsys, enter):
     words = "export nastran springs --preload 9e3 --units mm-N-MPa-t --normal x --first 70 --out j.bdf"
     assert cli.main([*words.split(), "--node-1", "-10", "0", "0", "--node-2", "12", "0", "0", "--json"]) == 0
     facts = json.loads(capsys.readouterr().out)
-    spring = BoltedJointSpring.for_joint(load_default("bolted_joint").values)
+    spring = BoltedJointSpring.from_joint(load_default("bolted_joint").values)
     K = spring.tangent_stiffness(9e3)  # rigid sides: without modes
     np.testing.assert_allclose(
         [facts[f"K_{name}"] for name in ("xx", "yy", "zz", "rx", "ry", "rz")], np.diag(K), rtol=1e-9
@@ -315,7 +315,9 @@ class TestElasticJoint:
         joint = open_joint(KINDS["bolted_joint"].models[0], file)
         step = np.array([1e-10] * 3 + [1e-8] * 3)
         moves = np.vstack([np.diag(step), -np.diag(step)])
-        found = joint.follow(dict(zip(motions, moves.T, strict=True)), each_from_rest=True).columns
+        found = joint.evaluate_path(
+            dict(zip(motions, moves.T, strict=True)), restart_at_each_point=True
+        ).variable_columns
         F = np.column_stack([found[name] for name in forces])
         slope = -(F[:6] - F[6:]).T / (2.0 * step)
         size = np.sqrt(np.diag(matrix))
@@ -332,7 +334,7 @@ class TestElasticJoint:
         (tmp_path / "loaded.inp").write_text(DECK.format(*range(FIRST, FIRST + 4), LOAD))
         moved = calculix.run_deck(tmp_path / "loaded.inp")
         file = load_parameter_file(elastic_joint / "joint.toml")
-        H = BoltedJointSpring.for_joint(file.values).tangent_stiffness(15e3)
+        H = BoltedJointSpring.from_joint(file.values).tangent_stiffness(15e3)
         compliance = np.linalg.inv(H)[:6, :6]  # of the motion, with the modes in equilibrium
         expected = expected_motion(np.linalg.inv(compliance), positions, "z")
         found = np.concatenate([moved[FIRST + 1], moved[FIRST + 3]])

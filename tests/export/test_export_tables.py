@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from jointfmu_tools import cli
 from jointfmu_tools.exchange.export import keywords, tables, writing
-from jointfmu_tools.exchange.export.placing import SI_UNIT_SET, UNIT_SETS
+from jointfmu_tools.exchange.export.target_model import SI_UNIT_SET, UNIT_SETS
 from jointfmu_tools.joints.bolted_joint.export import (
-    MAX_CONTACT_OVER_TIGHTENING_FORCE,
+    MAX_TABULATED_OVER_TIGHTENING_FORCE,
     TightenedState,
     tabulate_normal_force,
 )
@@ -29,7 +29,7 @@ STATE = TightenedState(9e3, 0.0)
 
 @pytest.fixture(scope="module")
 def bolted():
-    return BoltedJointSpring.for_interface_nodes(load_default("bolted_joint").values)
+    return BoltedJointSpring.from_interface_nodes(load_default("bolted_joint").values)
 
 
 @pytest.fixture(scope="module")
@@ -51,29 +51,29 @@ def test_law_table_keeps_to_the_law(joint, error, request):
     spring = request.getfixturevalue(joint)
     law, curve = spring.joint, spring.curve
     table = tables.tabulate_law(curve, error)
-    x, p, k = table.rows.T
+    x, p, k = table.table_rows.T
     assert np.all(np.diff(x) > 0.0)
     assert np.all(np.diff(p) > 0.0)
-    assert table.rows[0].tolist() == [0.0, 0.0, 0.0]
-    assert p[1] == pytest.approx(curve.closing_end_load, rel=1e-9)
+    assert table.table_rows[0].tolist() == [0.0, 0.0, 0.0]
+    assert p[1] == pytest.approx(curve.closing_end_pressure, rel=1e-9)
     assert p[-1] == pytest.approx(law.hardness, rel=1e-9)
     state = evaluate_at_pressure(law, p[1:])
     np.testing.assert_allclose(k[1:], state["K_N"] / law.A_0, rtol=1e-7)  # the curve is within 1e-8
-    some = np.geomspace(curve.closing_end_load, 0.999 * curve.end_point[1], 20001)
+    some = np.geomspace(curve.closing_end_pressure, 0.999 * curve.end_point[1], 20001)
     at = curve.inverse(some) - curve.displacement[0]
     straight = np.max(np.abs(np.interp(at, x, p) / some - 1.0))
     # between the points at which the table was measured the error hardly grows
-    assert straight <= 1.01 * table.linear_errors[0] <= 1.01 * error
+    assert straight <= 1.01 * table.linear_interpolation_errors[0] <= 1.01 * error
     slopes = (np.diff(p) / np.diff(x))[np.searchsorted(x, at, side="right") - 1]
     exact = curve.derivatives(at + curve.displacement[0], 1)[1]
-    assert np.max(np.abs(slopes / exact - 1.0)) <= 1.02 * table.linear_errors[1]
+    assert np.max(np.abs(slopes / exact - 1.0)) <= 1.02 * table.linear_interpolation_errors[1]
     cubic = PchipInterpolator(x, p)
     above = at > x[2]  # the first segment belongs to the closing
     assert np.max(np.abs(cubic(at) / some - 1.0)[above]) <= 1.05 * table.monotone_cubic_errors[0]
 
 
 def test_error_falls_with_the_square_of_the_rows(bolted):
-    rows = [len(tables.tabulate_law(bolted.curve, error).rows) for error in (4e-3, 1e-3, 2.5e-4)]
+    rows = [len(tables.tabulate_law(bolted.curve, error).table_rows) for error in (4e-3, 1e-3, 2.5e-4)]
     # straight lines: second order; a whole number of rows
     assert rows[1] / rows[0] == pytest.approx(2.0, rel=0.06)
     assert rows[2] / rows[1] == pytest.approx(2.0, rel=0.06)
@@ -81,7 +81,7 @@ def test_error_falls_with_the_square_of_the_rows(bolted):
 
 def test_pull_table_is_the_joints_force(bolted):
     table = tabulate_normal_force(bolted, 9e3, 500.0, 1e-3)
-    s, force, k = table.rows.T
+    s, force, k = table.table_rows.T
     assert np.all(np.diff(s) > 0.0)
     assert np.all(np.diff(force) >= 0.0)
     zero = int(np.flatnonzero(s == 0.0)[0])
@@ -92,7 +92,7 @@ def test_pull_table_is_the_joints_force(bolted):
         assert k[i] == pytest.approx(state["K_zz"], rel=1e-9, abs=1.0)
     assert force[-1] == force[-2] == pytest.approx(72e3, rel=1e-12)
     assert force[0] == pytest.approx(
-        -(MAX_CONTACT_OVER_TIGHTENING_FORCE - 1.0) * 72e3, rel=1e-3
+        -(MAX_TABULATED_OVER_TIGHTENING_FORCE - 1.0) * 72e3, rel=1e-3
     )  # its end is interpolated
     for x in np.linspace(s[0], s[-2], 101):
         exact = -bolted.evaluate(9e3, 500.0, (0.0, 0.0, x), (0.0, 0.0, 0.0))["f_z"]
@@ -101,11 +101,11 @@ def test_pull_table_is_the_joints_force(bolted):
 
 def test_drive_table_is_odd_and_keeps_to_the_curve(drive):
     table = tables.tabulate_odd_curve(drive.curve, 1e-3)
-    np.testing.assert_array_equal(table.rows[:, :2], -table.rows[::-1, :2])
-    np.testing.assert_array_equal(table.rows[:, 2], table.rows[::-1, 2])
+    np.testing.assert_array_equal(table.table_rows[:, :2], -table.table_rows[::-1, :2])
+    np.testing.assert_array_equal(table.table_rows[:, 2], table.table_rows[::-1, 2])
     tau = np.geomspace(1e-3, 30.0, 5001)
     phi = drive.evaluate_torque(tau)["phi_rel"]
-    assert np.max(np.abs(np.interp(phi, *table.rows[:, :2].T) / tau - 1.0)) <= 1.01e-3
+    assert np.max(np.abs(np.interp(phi, *table.table_rows[:, :2].T) / tau - 1.0)) <= 1.01e-3
 
 
 @pytest.mark.parametrize("error", [0.0, -1e-3, 0.5, np.nan, 1e-9])
@@ -124,24 +124,24 @@ def test_state_outside_the_law_is_refused(bolted):
 
 def test_contact_text(bolted):
     table = tables.tabulate_law(bolted.curve, 1e-3)
-    text = keywords.format_contact(table, MM, ["about"], keywords.MAX_CALCULIX_ROWS)
+    text = keywords.format_contact(table, MM, ["about"], keywords.MAX_CALCULIX_TABLE_ROWS)
     cards = [line for line in text.splitlines() if line.startswith("*") and not line.startswith("**")]
     assert cards == [
         "*SURFACE INTERACTION, NAME=JOINT",
         "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TABULAR",
     ]
     rows = np.loadtxt(text.splitlines(), delimiter=",", comments="*")
-    np.testing.assert_allclose(rows[:-1, 0], table.rows[:, 1] / 1e6, rtol=1e-10)  # eleven digits
-    np.testing.assert_allclose(rows[:-1, 1], table.rows[:, 0] * 1e3, rtol=1e-10)
+    np.testing.assert_allclose(rows[:-1, 0], table.table_rows[:, 1] / 1e6, rtol=1e-10)  # eleven digits
+    np.testing.assert_allclose(rows[:-1, 1], table.table_rows[:, 0] * 1e3, rtol=1e-10)
     # the last row continues the tangent by a metre, 1000 mm
     assert rows[-1, 1] - rows[-2, 1] == pytest.approx(1e3)
-    assert (rows[-1, 0] - rows[-2, 0]) / 1e3 == pytest.approx(table.rows[-1, 2] / 1e9, rel=1e-9)
+    assert (rows[-1, 0] - rows[-2, 0]) / 1e3 == pytest.approx(table.table_rows[-1, 2] / 1e9, rel=1e-9)
     assert max(len(cell) for line in text.splitlines()[-9:] for cell in line.split(", ")) <= 20  # ccx: f20.0
 
 
 def test_calculix_refuses_more_rows_than_it_holds():
     file = load_default("bolted_joint")
-    rows = writing.export_contact("abaqus", file, SI_UNIT_SET, 1e-4).facts_by_name["rows"]
+    rows = writing.export_contact("abaqus", file, SI_UNIT_SET, 1e-4).printed_quantities["rows"]
     assert rows > 200
     with pytest.raises(ValueError, match=f"has {rows + 1} rows, CalculiX holds 200; state a larger error"):
         writing.export_contact("calculix", file, SI_UNIT_SET, 1e-4)
@@ -157,7 +157,7 @@ def test_calculix_gets_the_smallest_error_that_fits(finish, tmp_path, capsys, en
     new = "new bolted-joint --plate 80x40 --bolts 2xM10 --at 40x0 --grip 10 15 --hole 11 --sides rigid"
     assert cli.main([*new.split(), "--material", "steel", "--finish", finish, "--out", "c.toml"]) == 0
     file = load_parameter_file("c.toml")
-    needed = writing.export_contact("abaqus", file, SI_UNIT_SET, 1e-3).facts_by_name["rows"] + 1
+    needed = writing.export_contact("abaqus", file, SI_UNIT_SET, 1e-3).printed_quantities["rows"] + 1
     assert needed > 200
     capsys.readouterr()
     assert (
@@ -171,16 +171,18 @@ def test_calculix_gets_the_smallest_error_that_fits(finish, tmp_path, capsys, en
     assert f"(0.001 needs {needed} rows)" in found[0]
     error = float(found[1])
     rows = len(np.loadtxt("c.inp", delimiter=",", comments="*"))
-    curve = BoltedJointSpring.for_interface_nodes(file.values).curve
-    assert rows == len(tables.tabulate_law(curve, error).rows) + 1 <= 200
+    curve = BoltedJointSpring.from_interface_nodes(file.values).curve
+    assert rows == len(tables.tabulate_law(curve, error).table_rows) + 1 <= 200
     smaller = error - 10.0 ** np.floor(np.log10(error * 1.0001) - 1.0)
-    assert len(tables.tabulate_law(curve, smaller).rows) + 1 > 200
+    assert len(tables.tabulate_law(curve, smaller).table_rows) + 1 > 200
 
 
 def test_error_that_no_table_has():
     table = tables.LoadTable(np.zeros((300, 3)), (0.0, 0.0), (0.0, 0.0))
-    with pytest.raises(ValueError, match=r"no table with an error below 0\.5 has at most 200 rows"):
-        tables.fit_row_limit(lambda error: table, 1e-3, 200)
+    with pytest.raises(
+        ValueError, match=r"the law needs more than 200 rows for a table with an error of 0\.5"
+    ):
+        tables.tabulate_within_row_limit(lambda error: table, 1e-3, 200)
 
 
 @pytest.mark.parametrize(
@@ -193,18 +195,18 @@ def test_error_that_no_table_has():
 )
 def test_csv_is_read_by_numpy(joint, state, heads):
     written = writing.export_curve("csv", load_default(joint), state, SI_UNIT_SET, 1e-3)
-    lines = [line for line in written.text.splitlines() if not line.startswith("#")]
+    lines = [line for line in written.file_text.splitlines() if not line.startswith("#")]
     assert lines[0] == heads
     rows = np.loadtxt(lines[1:], delimiter=",")
-    assert rows.shape == (written.facts_by_name["rows"], 3)
+    assert rows.shape == (written.printed_quantities["rows"], 3)
     slope = np.gradient(rows[:, 1], rows[:, 0])[2:-2]
     inside = rows[2:-2, 2] > 0.1 * rows[:, 2].max()
     assert np.max(np.abs(slope / rows[2:-2, 2] - 1.0)[inside]) < 0.01  # central differences of the load
 
 
 def test_units_of_a_curve():
-    metres = writing.export_curve("csv", load_default("gear_contact"), None, SI_UNIT_SET, 1e-2).text
-    millimetres = writing.export_curve("csv", load_default("gear_contact"), None, MM, 1e-2).text
+    metres = writing.export_curve("csv", load_default("gear_contact"), None, SI_UNIT_SET, 1e-2).file_text
+    millimetres = writing.export_curve("csv", load_default("gear_contact"), None, MM, 1e-2).file_text
     one, other = (
         np.loadtxt(t.splitlines(), delimiter=",", comments=["#", "s"]) for t in (metres, millimetres)
     )
@@ -278,10 +280,10 @@ def modelica_table(text):
 )
 def test_modelica_text(joint, state):
     written = writing.export_curve("modelica", load_default(joint), state, SI_UNIT_SET, 1e-3)
-    name, rows = modelica_table(written.text)
-    assert name == written.facts_by_name["table"] == ("torque" if joint == "harmonic_drive" else "force")
+    name, rows = modelica_table(written.file_text)
+    assert name == written.printed_quantities["table"] == ("torque" if joint == "harmonic_drive" else "force")
     assert np.all(np.diff(rows[:, 0]) > 0.0)
-    csv = writing.export_curve("csv", load_default(joint), state, SI_UNIT_SET, 1e-3).text
+    csv = writing.export_curve("csv", load_default(joint), state, SI_UNIT_SET, 1e-3).file_text
     same = np.loadtxt([line for line in csv.splitlines() if line[0] in "-0123456789"], delimiter=",")
     np.testing.assert_array_equal(rows, same)
 
@@ -289,7 +291,7 @@ def test_modelica_text(joint, state):
 def test_rumoca_runs_a_combi_table_of_the_rows(drive):
     import rumoca
 
-    text = writing.export_curve("modelica", load_default("harmonic_drive"), None, SI_UNIT_SET, 1e-3).text
+    text = writing.export_curve("modelica", load_default("harmonic_drive"), None, SI_UNIT_SET, 1e-3).file_text
     rows = modelica_table(text)[1]
     matrix = "[" + "; ".join(", ".join(map(repr, row)) for row in rows.tolist()) + "]"
     span = 1.2 * float(rows[-1, 0])
@@ -315,7 +317,7 @@ def test_rumoca_runs_a_combi_table_of_the_rows(drive):
 def test_header_is_plain_text():
     file = load_default("gear_contact")
     odd = type(file)(file.joint, "Zähne *STEP", file.values, file.origins, file.sources)
-    text = writing.export_contact("abaqus", odd, SI_UNIT_SET, 1e-2).text
+    text = writing.export_contact("abaqus", odd, SI_UNIT_SET, 1e-2).file_text
     assert "** parameters: Z?hne *STEP (gear_contact)" in text
     assert text.isascii()
     assert tables.format_modelica_table(np.eye(2), "t", ["a\nb"]).splitlines()[2] == "# a b"

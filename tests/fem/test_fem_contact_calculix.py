@@ -20,7 +20,7 @@ STIFFNESS = 3e11  # Pa/m
 
 
 def deck(model: ContactModel, loads: list[np.ndarray], overclosure: float) -> Iterator[str]:
-    firsts = (0, model.bodies[0].basis.N)
+    firsts = (0, model.bodies[0].finite_element_basis.N)
     for k, body in enumerate(model.bodies):
         yield from body_lines(body, k + 1, firsts[k], k * model.bodies[0].mesh.nelements, k * overclosure)
     yield "*SURFACE INTERACTION, NAME=LAW\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR"
@@ -43,18 +43,20 @@ def test_calculix_finds_the_same_contact(tmp_path):
     force = np.array([4.8e3, 3.2e3])
     loads = [sign * head @ force for sign, head in zip((1.0, -1.0), joint.bolt_head_loads, strict=True)]
     mean = force.sum() / joint.contact_interface.quadrature_area.sum()
-    ours = model.solve(loads, mean)
+    ours = model.solve_equilibrium(loads, mean)
     (tmp_path / "plates.inp").write_text("\n".join(deck(model, loads, mean / STIFFNESS)) + "\n")
     run = subprocess.run(["ccx", "plates"], cwd=tmp_path, capture_output=True, text=True, timeout=300)
     assert run.returncode == 0, run.stdout[-500:]
     moved = displacements(tmp_path / "plates.dat")
-    first = joint.bodies[0].basis.N
-    flat = np.column_stack([*joint.contact_interface.nodes, np.zeros(joint.contact_interface.nodes.shape[1])])
-    lower, upper = (cKDTree(body.nodes.T).query(flat)[1] for body in joint.bodies)
+    first = joint.bodies[0].finite_element_basis.N
+    flat = np.column_stack(
+        [*joint.contact_interface.node_positions, np.zeros(joint.contact_interface.node_positions.shape[1])]
+    )
+    lower, upper = (cKDTree(body.node_positions.T).query(flat)[1] for body in joint.bodies)
     approach = ours.approach_offset + moved[lower, 2] - moved[first + upper, 2]
-    pressure, peak = law.derivatives(approach)[0], ours.node_pressure.max()
+    pressure, peak = law.derivatives(approach)[0], ours.nodal_pressure.max()
     assert ours.pressure.min() == 0.0  # it opens
     assert pressure.max() == pytest.approx(peak, rel=1e-3)  # 4e-5 measured
     assert (
-        np.abs(pressure - ours.node_pressure).max() < 2e-3 * peak
+        np.abs(pressure - ours.nodal_pressure).max() < 2e-3 * peak
     )  # 7.6e-4: both integrate over cut elements

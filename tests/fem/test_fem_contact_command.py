@@ -110,7 +110,7 @@ def test_the_joint_has_the_field(computed):
     joint = load_parameter_file(folder / "joint.toml", "bolted_joint").values
     assert (joint.n_bolts, joint.row_bolts, joint.row_distance) == (4.0, 2.0, 0.03)
     assert (joint.side1.E, joint.side1.nu) == (2.1e11, 0.3)
-    state = BoltedJointSpring.for_interface_nodes(joint).evaluate(5e3, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    state = BoltedJointSpring.from_interface_nodes(joint).evaluate(5e3, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     for name, sum_ in (("K_zz", "K_N"), ("K_rx", "K_rx"), ("K_ry", "K_ry")):
         assert state[name] == pytest.approx(found[sum_], rel=1e-6), name  # what the reduction keeps
 
@@ -154,8 +154,8 @@ REFUSED = [
     (["--preload", "5e3", "--moment", "1e6"], "moment = 1e+06 N.m is outside (-300, 300)"),
     (["--refinement", "0.1"], "--refinement = 0.1 is outside [0.3, 4]"),
     (["--refine", "0"], "--refine = 0 is outside [1, 5]"),
-    (["--field", "field.dat"], "suffix '.dat' is not a field, allowed are .csv, .vtu"),
-    (["--plot", "field.gif"], "suffix '.gif' is not a picture"),
+    (["--field", "field.dat"], "suffix '.dat' is not of a pressure field, allowed are .csv, .vtu"),
+    (["--plot", "field.gif"], "suffix '.gif' is not that of a picture"),
     (["--out", "."], "is a folder"),
     (["--params", "nowhere.toml"], "nowhere.toml: cannot be read"),
 ]

@@ -9,7 +9,7 @@ from clients import needs
 from jointfmu_tools.fem.assembly import read_assembly
 from jointfmu_tools.fem.elasticity import ElasticBody
 from jointfmu_tools.fem.geometry import Assembly, BoltGrid, BoltList, BoxSection, Plate
-from jointfmu_tools.fem.mesh import contact_mesh, extrude_body_mesh, find_contact_cells, mesh_plan_view
+from jointfmu_tools.fem.mesh import extrude_body_mesh, find_contact_cells, make_contact_mesh, mesh_plan_view
 from skfem import Basis, BilinearForm, ElementHexS2, ElementVector, LinearForm, MeshHex, condense, solve
 from skfem.models.elasticity import lame_parameters, linear_elasticity
 
@@ -63,7 +63,7 @@ def test_the_mesh_has_the_bodies_volumes(box_on_plate):
 @needs("gmsh")
 def test_the_contact_has_the_nodes_of_both_bodies(box_on_plate):
     assembly, plan = box_on_plate
-    contact = contact_mesh(plan, find_contact_cells(plan, assembly))
+    contact = make_contact_mesh(plan, find_contact_cells(plan, assembly))
     wanted = {tuple(p) for p in contact.p.T.tolist()}
     for side in (1, 2):
         mesh = extrude_body_mesh(plan, assembly, side, 0.6)
@@ -74,11 +74,13 @@ def test_the_contact_has_the_nodes_of_both_bodies(box_on_plate):
 def test_heads_are_annuli(box_on_plate):
     assembly, plan = box_on_plate
     body = ElasticBody(extrude_body_mesh(plan, assembly, 2, 0.6), 1.5e11, 0.28, 7800.0)
-    for i, at in enumerate(assembly.bolts.positions):
-        push = body.uniform_load(body.mesh.boundaries[f"head{i + 1}"])[2::3]
-        nodes = body.nodes[:, push != 0.0]
+    for i, at in enumerate(assembly.bolts.bolt_positions):
+        push = body.distribute_unit_force(body.mesh.boundaries[f"head{i + 1}"])[2::3]
+        nodes = body.node_positions[:, push != 0.0]
         assert push.sum() == pytest.approx(1.0, rel=1e-12)
-        assert body.nodes @ push == pytest.approx([*at, 0.02], abs=2e-5)  # the polygon is not quite symmetric
+        assert body.node_positions @ push == pytest.approx(
+            [*at, 0.02], abs=2e-5
+        )  # the polygon is not quite symmetric
         radius = np.hypot(*(nodes[:2].T - at).T)
         assert radius.min() == pytest.approx(0.00875, rel=0.03)  # a polygon of the same area
         assert radius.max() == pytest.approx(0.012, rel=1e-6)
@@ -87,7 +89,7 @@ def test_heads_are_annuli(box_on_plate):
 @needs("gmsh")
 def test_refinement_divides_the_sizes():
     assembly = Assembly("boxes", BOX, BOX, FRAME)
-    counts = [mesh_plan_view(assembly, refinement).cells.shape[1] for refinement in (0.5, 1.0, 2.0)]
+    counts = [mesh_plan_view(assembly, refinement).cell_corners.shape[1] for refinement in (0.5, 1.0, 2.0)]
     assert counts[0] < counts[1] < counts[2] / 2
 
 
@@ -108,15 +110,15 @@ def test_the_stiffness_is_that_of_scikit_fem():
     ours = ElasticBody(mesh, 1.5e11, 0.28, 7800.0)
     basis = Basis(mesh, ElementVector(ElementHexS2()), intorder=4)
     theirs = BilinearForm(linear_elasticity(*lame_parameters(1.5e11, 0.28))).assemble(basis)
-    assert np.array_equal(np.repeat(ours.nodes, 3, axis=1), basis.doflocs)  # the same numbering
-    assert abs(ours.stiffness - theirs).max() < 1e-13 * abs(theirs).max()
+    assert np.array_equal(np.repeat(ours.node_positions, 3, axis=1), basis.doflocs)  # the same numbering
+    assert abs(ours.stiffness_matrix - theirs).max() < 1e-13 * abs(theirs).max()
 
 
 def test_rigid_motions_cost_nothing_and_carry_the_mass():
     body = ElasticBody(distorted(3, 0.2), 1.5e11, 0.28, 7800.0)
-    motions = body.rigid_motions()
-    assert np.abs(body.stiffness @ motions).max() < 1e-12 * abs(body.stiffness).max()
-    inertia = motions.T @ body.mass @ motions
+    motions = body.rigid_body_motions()
+    assert np.abs(body.stiffness_matrix @ motions).max() < 1e-12 * abs(body.stiffness_matrix).max()
+    inertia = motions.T @ body.mass_matrix @ motions
     assert np.diag(inertia)[:3] == pytest.approx([7800.0] * 3, rel=1e-12)
     assert np.diag(inertia)[3:] == pytest.approx(
         [7800.0 * 2.0 / 3.0] * 3, rel=1e-12
@@ -131,7 +133,7 @@ def test_elasticity_converges_to_a_smooth_solution(by: float, order: float):
     errors = []
     for n in (2, 4, 8) if by == 0.0 else (4, 8):
         body = ElasticBody(distorted(n, by), 1.0, 0.3, 1.0)
-        x = np.asarray(body.basis.global_coordinates())
+        x = np.asarray(body.finite_element_basis.global_coordinates())
         s, c = np.sin(np.pi * x), np.cos(np.pi * x)
         exact = s[0] * s[1] * s[2]
         mixed = [c[0] * c[1] * s[2], c[0] * s[1] * c[2], s[0] * c[1] * c[2]]
@@ -141,12 +143,14 @@ def test_elasticity_converges_to_a_smooth_solution(by: float, order: float):
         ]
         load = np.zeros(body.unknown_count)
         for k in range(3):
-            load[k::3] = LinearForm(lambda v, w, f=force[k]: f * v).assemble(body.basis)
-        edge = np.any((np.abs(body.nodes) < 1e-9) | (np.abs(body.nodes - 1.0) < 1e-9), axis=0)
+            load[k::3] = LinearForm(lambda v, w, f=force[k]: f * v).assemble(body.finite_element_basis)
+        edge = np.any(
+            (np.abs(body.node_positions) < 1e-9) | (np.abs(body.node_positions - 1.0) < 1e-9), axis=0
+        )
         held = (3 * np.flatnonzero(edge)[:, None] + np.arange(3)).ravel()
-        u = solve(*condense(body.stiffness, load, D=held))
-        miss = np.asarray(body.basis.interpolate(u[::3])) - exact
-        errors.append(float(np.sqrt(np.sum(body.basis.dx * miss**2))))
+        u = solve(*condense(body.stiffness_matrix, load, D=held))
+        miss = np.asarray(body.finite_element_basis.interpolate(u[::3])) - exact
+        errors.append(float(np.sqrt(np.sum(body.finite_element_basis.dx * miss**2))))
     assert np.log2(errors[-2] / errors[-1]) > order
 
 
@@ -156,7 +160,7 @@ def test_elasticity_converges_to_a_smooth_solution(by: float, order: float):
 def test_the_shipped_assembly():
     assembly = read_assembly(SHIPPED)
     assert assembly.side1 == assembly.side2
-    x, y = assembly.bolts.positions.T
+    x, y = assembly.bolts.bolt_positions.T
     assert x.tolist() == pytest.approx([-0.1, 0.0, 0.1, -0.1, 0.1, -0.1, 0.0, 0.1])
     assert y.tolist() == pytest.approx([-0.15, -0.15, -0.15, 0.0, 0.0, 0.15, 0.15, 0.15])
     force = assembly.bolt_forces(15e3, 4500.0)
@@ -171,7 +175,7 @@ def test_bolts_at_given_places(tmp_path):
              (("x", [0.0, 0.1]), ("y", [0.15, 0.15]))]  # fmt: skip
     path = tmp_path / "a.toml"
     path.write_text("\n".join([head, "[bolts]", 'layout = "list"', *lists, *keep]))
-    assert read_assembly(path).bolts.positions.tolist() == [[0.0, 0.15], [0.1, 0.15]]
+    assert read_assembly(path).bolts.bolt_positions.tolist() == [[0.0, 0.15], [0.1, 0.15]]
 
 
 def entry(name: str, value: str) -> str:

@@ -94,7 +94,7 @@ def test_a_mirrored_side_moves_as_the_mirror_image():
         cells = UnitLoadResponse.from_joint(
             joint, near, np.ones(joint.contact_interface.quadrature_area.size)
         )
-        return cells.unit_load_displacement, joint.linearize(springs, 1e8).unit_motion_displacement
+        return cells.unit_load_displacement, joint.linearise_joint(springs, 1e8).unit_motion_displacement
 
     found = moved()
     soft = replace(joint, bodies=(joint.bodies[0], replace(joint.bodies[1], E=1e11)))

@@ -48,15 +48,16 @@ def make_assembly(x, y, length=0.06, width=0.06, edge=0.0):
 def test_the_mesh_has_the_symmetry_and_the_area_of_the_plan(assembly, mirrors, graded_heads):
     """Every node has its mirror image. Cells do not overlap: their areas add up to the contact."""
     plan = mesh_symmetric_plan(assembly, 0.7, graded_heads)
-    points = {tuple(p) for p in np.round(1e8 * plan.points.T).tolist()}
+    points = {tuple(p) for p in np.round(1e8 * plan.node_positions.T).tolist()}
     images = {"x": [[-1, 0], [0, 1]], "y": [[1, 0], [0, -1]], "diagonal": [[0, 1], [1, 0]]}
     found = [
         name
         for name, matrix in images.items()
-        if {tuple(p) for p in np.round(1e8 * plan.points.T @ np.array(matrix, float)).tolist()} == points
+        if {tuple(p) for p in np.round(1e8 * plan.node_positions.T @ np.array(matrix, float)).tolist()}
+        == points
     ]
     assert found == mirrors
-    x, y = plan.points[:, plan.cells[:, find_contact_cells(plan, assembly)]]
+    x, y = plan.node_positions[:, plan.cell_corners[:, find_contact_cells(plan, assembly)]]
     area = 0.5 * np.abs((x[2] - x[0]) * (y[3] - y[1]) - (x[3] - x[1]) * (y[2] - y[0]))
     assert area.sum() == pytest.approx(assembly.contact_area, rel=1e-9)
 
@@ -74,13 +75,13 @@ def test_a_body_that_ends_under_a_head_is_refused():
 def linear_joint(name, refinement=1.0):
     """Finite elements of a joint of CONVERGED under rigid heads, and the stiffness of its bolt [N/m]."""
     grip, material, _ = CONVERGED[name]
-    options = dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.options) | M10
+    options = dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.command_options) | M10
     options |= {"grip": grip, "material": material, "Ra": ["0.8"], "attached": "heads"}
     drawn = read_drawing(options)
-    file = drawn.file
-    joint = JointFiniteElements.from_assembly(drawn.plates.make_assembly(file), "heads", refinement)
-    springs = plate_finite_elements._interface_stiffness(file, drawn.plates.preload, joint, None)
-    return joint.linearize(springs, file.values.bolt_stiffness), file.values.bolt_stiffness
+    file = drawn.parameter_file
+    joint = JointFiniteElements.from_assembly(drawn.bolted_plates.make_assembly(file), "heads", refinement)
+    springs = plate_finite_elements._interface_stiffness(file, drawn.bolted_plates.preload, joint, None)
+    return joint.linearise_joint(springs, file.values.bolt_stiffness), file.values.bolt_stiffness
 
 
 @needs("gmsh")
@@ -92,7 +93,7 @@ def test_members_under_rigid_heads_are_converged(name):
     Measured: 0.6, -1.0, -1.4, 1.7 and 0.2 %.
     """
     joint, bolt = linear_joint(name)
-    K = np.diag(joint.stiffness)
+    K = np.diag(joint.stiffness_matrix)
     assert K[2] - bolt == pytest.approx(CONVERGED[name][2], rel=0.02)
     assert K[3] == pytest.approx(K[4], rel=1e-6)
 
@@ -102,8 +103,8 @@ def test_members_under_rigid_heads_are_converged(name):
 def test_the_second_mesh_estimates_the_error():
     """The change from the coarse mesh covers the change to a mesh of two thirds of the element size."""
     coarse, usual, fine = (linear_joint("2 x 2 steel", r)[0].compliances() for r in (0.5, 1.0, 1.5))
-    estimate = plate_finite_elements._mesh_changes(usual, coarse)
-    error = plate_finite_elements._mesh_changes(fine, usual)
+    estimate = plate_finite_elements._compare_meshes(usual, coarse)
+    error = plate_finite_elements._compare_meshes(fine, usual)
     assert set(error) == {"K_xx", "K_yy", "K_zz", "K_rx", "K_ry", "K_rz", "load factor"}
     for quantity, change in error.items():
         assert abs(change) < min(0.03, abs(estimate[quantity])), quantity

@@ -27,7 +27,7 @@ LEVELS = np.array([0.05, 0.2, 0.4, 0.6, 0.8, 1.0, 1.3])
 @pytest.fixture(scope="module")
 def disc():
     """Uniformly pressed disc of many points whose middle lags behind by two modes, and its patches."""
-    law = BoltedJointSpring.for_joint(load_default("bolted_joint").values).friction_law.foundation()
+    law = BoltedJointSpring.from_joint(load_default("bolted_joint").values).friction_law.foundation()
     line = RADIUS * (np.arange(COUNT) + 0.5) / COUNT * 2.0 - RADIUS
     place = np.stack([each.ravel() for each in np.meshgrid(line, line)], axis=1)
     place = place[np.hypot(*place.T) < RADIUS]
@@ -72,9 +72,9 @@ def fit(disc) -> PatchFit:
     )
 
 
-def test_ways_are_single_and_paired_motions(disc):
+def test_shears_have_one_or_two_components_of_motion(disc):
     shears = disc[-1]
-    moving = np.count_nonzero(shears.motion, axis=1)
+    moving = np.count_nonzero(shears.rigid_motion, axis=1)
     assert len(moving) == 63
     assert (np.sum(moving == 1), np.sum(moving == 2)) == (21, 42)
 
@@ -83,7 +83,7 @@ def test_patches_lose_and_resist_as_all_points(disc):
     """Patches at the mean displacements dissipate too little in partial slip; fitted patches do not."""
     law, points, rows, few, means, shears = disc
     aim = compute_friction_work(law, shears, points, rows)
-    fitted = fit(disc).fit(means)
+    fitted = fit(disc).fit_patches(means)
     before, after = (compute_friction_work(law, shears, few, each) for each in (means, fitted))
     partial = np.arange(1, 7)  # along x
     assert np.min(before.cycle_loss[partial] / aim.cycle_loss[partial]) < 0.97
@@ -100,7 +100,7 @@ def test_the_tightened_joint_stays_as_stiff(disc):
     """The fitted patches keep the stiffness of linear states without slip, and have the same loss."""
     law, few, means = disc[0], disc[3], disc[4]
     working, full = fit(disc), tightened(disc).contact_stiffness
-    fitted = working.fit(means)
+    fitted = working.fit_patches(means)
     found = [
         stick_stiffness_matrix(evaluate_friction(law, LINEAR, few, each)[1], few.point_area)
         for each in (means, fitted)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 from clients import needs
-from jointfmu_tools.fem.elasticity import Cholesky
+from jointfmu_tools.fem.elasticity import CholeskyFactor
 from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate
 from jointfmu_tools.fem.symmetric_factorisation import SymmetricFactorisation, find_reflections
 from jointfmu_tools.fem.whole_joint import JointFiniteElements
@@ -31,9 +31,9 @@ def joint_matrix(attached, x, E, growth):
     joint = JointFiniteElements.from_assembly(Assembly("block", *plates, bolts), attached, 0.5)
     at = joint.contact_interface.quadrature_position[:, :1]
     springs = 1e12 * np.array([1.0, 1.0, 2.0]) * (1.0 + growth * at / 0.05)
-    linear = joint.linearize(springs, 1e8)
+    linear = joint.linearise_joint(springs, 1e8)
     free = linear.free_unknowns
-    matrix = linear.body_matrix + linear.contact_matrix + linear.bolt_matrix
+    matrix = linear.body_stiffness_matrix + linear.contact_stiffness_matrix + linear.bolt_stiffness_matrix
     return joint.bodies, free, matrix[free][:, free]
 
 
@@ -47,11 +47,11 @@ def test_classes_solve_as_the_complete_matrix(name):
         " and ".join(axis for k, axis in enumerate("xyz") if np.any(r.data[free % 3 == k] < 0.0))
         for r in reflections
     ] == axes
-    factor, complete = SymmetricFactorisation(matrix, reflections), Cholesky(matrix)
+    factor, complete = SymmetricFactorisation(matrix, reflections), CholeskyFactor(matrix)
     loads = np.random.default_rng(3).standard_normal((free.size, 3))
     loads[:, 1] += reflections[0] @ loads[:, 1]  # of one class
     loads[:, 2] *= np.arange(free.size) % 97 == 0
-    expected = complete.solve(loads)
+    expected = complete.solve_linear_system(loads)
     for given in (loads, sp.csc_matrix(loads)):
-        error = np.max(np.abs(factor.solve(given) - expected), axis=0)
+        error = np.max(np.abs(factor.solve_linear_system(given) - expected), axis=0)
         assert np.all(error < 1e-10 * np.max(np.abs(expected), axis=0))

@@ -148,7 +148,7 @@ def test_a_bracket_slips_under_a_lever_as_its_elements_do():
     for six in np.outer(np.sin(angles), there) + np.outer(1.0 - np.cos(angles), back):
         memory = spring.advance(JointInputs(joint.preload, 0.0, six), memory)[1]
         after = spring.history_layout.split(memory)
-        modal_coordinates = after["modal_coordinates"][: len(spring.modes.stiffness)]
-        opened = rigid_opening(spring.points.position, six) + spring.modes.opening @ modal_coordinates
+        modal_coordinates = after["modal_coordinates"][: len(spring.modes.modal_stiffness)]
+        opened = rigid_opening(spring.points.position, six) + spring.modes.point_opening @ modal_coordinates
         points, few = (spring.curve.derivatives(x, 0)[0] for x in (start - opened, after["approach"]))
         assert spring.patches.area_share @ few == pytest.approx(spring.points.area_share @ points, rel=2e-4)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from jointfmu_tools.inputs.fields import ansys
 from jointfmu_tools.inputs.fields.contact_surface import ContactPlane
-from jointfmu_tools.inputs.fields.mesh import nodal_areas
+from jointfmu_tools.inputs.fields.mesh import compute_nodal_areas
 from jointfmu_tools.inputs.fields.reading import FieldReader
 from mapdl_archive import examples
 from surroundings import missing_package
@@ -54,14 +54,14 @@ def test_contact_elements_of_an_archive(tmp_path):
     )
     mesh.write_text(archive(place, elements, {1: 174, 2: 170}))
     field, _ = FieldReader(**UNITS, companion_files=(mesh,)).read_field(path)
-    np.testing.assert_allclose(field.pressure, expected.pressure, rtol=1e-12)
-    np.testing.assert_allclose(field.area, expected.area, rtol=1e-5)  # six digits are listed
+    np.testing.assert_allclose(field.nodal_pressure, expected.nodal_pressure, rtol=1e-12)
+    np.testing.assert_allclose(field.nodal_area, expected.nodal_area, rtol=1e-5)  # six digits are listed
     triangle = cells[0][[0, 1, 2, 2, 4, 5, 2, 7]]  # K = L = O
     mesh.write_text(archive(place, [(1, triangle), *elements[1 : len(cells)]], {1: 174}))
-    half = nodal_areas(points, [triangle[None, [0, 1, 2, 4, 5, 7]]]).sum()
-    rest = nodal_areas(points, [cells[1:]]).sum()
+    half = compute_nodal_areas(points, [triangle[None, [0, 1, 2, 4, 5, 7]]]).sum()
+    rest = compute_nodal_areas(points, [cells[1:]]).sum()
     cut, _ = FieldReader(**UNITS, companion_files=(mesh,)).read_field(path)
-    assert cut.area.sum() == pytest.approx((half + rest) * 1e-6, rel=1e-12)
+    assert cut.nodal_area.sum() == pytest.approx((half + rest) * 1e-6, rel=1e-12)
 
 
 def test_solids_of_an_archive(tmp_path):
@@ -81,8 +81,10 @@ def test_solids_of_an_archive(tmp_path):
         field, _ = FieldReader(
             **UNITS, companion_files=(mesh,), contact_plane=ContactPlane(body_side=side)
         ).read_field(path)
-        assert field.area.sum() == pytest.approx(8e-6, rel=1e-12)
-        np.testing.assert_allclose(field.pressure, factor * p * 1e6, rtol=1e-5)  # five digits are printed
+        assert field.nodal_area.sum() == pytest.approx(8e-6, rel=1e-12)
+        np.testing.assert_allclose(
+            field.nodal_pressure, factor * p * 1e6, rtol=1e-5
+        )  # five digits are printed
 
 
 @pytest.mark.parametrize(("example", "area"), [
@@ -91,20 +93,20 @@ def test_solids_of_an_archive(tmp_path):
     (examples.tetarchivefile, 2 * 1.0 * 1.0 + 4 * 1.0 * 10.0),
 ])  # fmt: skip
 def test_files_of_ansys(example, area):
-    mesh = ansys.read_archive(Path(example))
+    mesh = ansys.read_ansys_archive(Path(example))
     found = 0.0
     for axis in range(3):
-        for block in mesh.faces():
-            flat = np.ptp(mesh.position[block][:, :, axis], axis=1) < 1e-9
-            found += nodal_areas(np.delete(mesh.position, axis, axis=1), [block[flat]]).sum()
+        for block in mesh.surface_faces():
+            flat = np.ptp(mesh.node_positions[block][:, :, axis], axis=1) < 1e-9
+            found += compute_nodal_areas(np.delete(mesh.node_positions, axis, axis=1), [block[flat]]).sum()
     assert found == pytest.approx(area, rel=1e-9)
 
 
 @pytest.mark.parametrize(("elements", "types", "message"), [
     ([(1, [0, 1])], {1: 14}, r"mesh.cdb: has no contact elements \(CONTA173, CONTA174\) and no solids"),
-    ([(1, [0, 1, 2, 3, 900])], {1: 174}, r"mesh.cdb: element 1 has 5 nodes, expected a whole"),
-    ([(1, [0, 1, 2, 900])], {1: 174}, r"mesh.cdb: node 911 of an element is not there; expected elements of"),
-    ([(1, [0, 1, 5, 4])], {1: 174}, r"p.lis: node 13: has a pressure and is on no face of the contact"),
+    ([(1, [0, 1, 2, 3, 900])], {1: 174}, r"mesh.cdb: element 1 has 5 different nodes, as no supported"),
+    ([(1, [0, 1, 2, 900])], {1: 174}, r"mesh.cdb: node 911 of an element has no coordinates; expected"),
+    ([(1, [0, 1, 5, 4])], {1: 174}, r"p.lis: node 13: has a pressure, but is on no element face"),
 ])  # fmt: skip
 def test_broken_archives_are_refused(tmp_path, elements, types, message):
     points, cells = faces("quad", 3)
@@ -135,7 +137,7 @@ def test_what_is_no_archive_is_one_line(tmp_path, text, message):
 def test_without_the_package_it_says_what_to_install(tmp_path, enter):
     enter(missing_package("mapdl_archive"))
     with pytest.raises(ValueError, match=r"mapdl_archive is missing, .*: pip install 'jointfmu\[field\]'"):
-        ansys.read_archive(tmp_path / "mesh.cdb")
+        ansys.read_ansys_archive(tmp_path / "mesh.cdb")
 
 
 def test_a_node_that_the_archive_has_not(tmp_path):
@@ -144,5 +146,5 @@ def test_a_node_that_the_archive_has_not(tmp_path):
     path.write_text(pressures(1.0 + points[:, 0], points, cells).replace(f"\n{11:8d}", f"\n{911:8d}", 1))
     flat = np.column_stack([points, np.zeros(len(points))])
     mesh.write_text(archive(flat, [(1, cell) for cell in cells], {1: 173}))
-    with pytest.raises(ValueError, match=r"p.lis: node 911 has a pressure and is not in .*mesh.cdb"):
+    with pytest.raises(ValueError, match=r"p.lis: node 911 has a pressure, but is not in .*mesh.cdb"):
         FieldReader(**UNITS, companion_files=(mesh,)).read_field(path)

@@ -9,7 +9,12 @@ import numpy as np
 import pytest
 from jointfmu_tools.inputs.fields import nodal_result
 from jointfmu_tools.inputs.fields.contact_surface import ContactPlane
-from jointfmu_tools.inputs.fields.mesh import SURFACE_CELLS, VOLUME_CELLS, boundary_faces, nodal_areas
+from jointfmu_tools.inputs.fields.mesh import (
+    SURFACE_CELL_NODE_COUNTS,
+    VOLUME_CELLS,
+    boundary_faces,
+    compute_nodal_areas,
+)
 from jointfmu_tools.inputs.fields.reading import FieldReader
 
 DATA = Path(__file__).parent
@@ -43,23 +48,23 @@ def faces(kind, n):
     return points, np.concatenate([quads[:, [0, 1, 2, 4, 5, 8]], quads[:, [0, 2, 3, 8, 6, 7]]])
 
 
-@pytest.mark.parametrize("kind", SURFACE_CELLS)
+@pytest.mark.parametrize("kind", SURFACE_CELL_NODE_COUNTS)
 def test_areas_are_positive_and_make_the_whole_surface(kind):
     points, cells = faces(kind, 4)
-    areas = nodal_areas(points, [cells])
+    areas = compute_nodal_areas(points, [cells])
     assert np.all(areas > 0.0)
     # the boundary is straight, so the faces fill the rectangle; round-off
     assert areas.sum() == pytest.approx(8.0, rel=1e-13)
 
 
-@pytest.mark.parametrize("kind", SURFACE_CELLS)
+@pytest.mark.parametrize("kind", SURFACE_CELL_NODE_COUNTS)
 def test_sums_of_a_nonlinear_function_converge_with_the_second_order(kind):
     """Sum of k(p) = p^0.9 for a smooth pressure on three meshes; the trapezoidal rule has second order."""
 
     def total(n):
         points, cells = faces(kind, n)
         p = 1.0 + np.sin(points[:, 0]) * np.cos(points[:, 1])
-        return nodal_areas(points, [cells]) @ p**0.9
+        return compute_nodal_areas(points, [cells]) @ p**0.9
 
     coarse, middle, fine = total(4), total(8), total(16)
     assert np.log2((coarse - middle) / (middle - fine)) == pytest.approx(2.0, abs=0.2)
@@ -89,7 +94,7 @@ def _area(points, face):
     """Area of a plane face in space."""
     own = points[face] - points[face[0]]
     _, _, axes = np.linalg.svd(own)
-    return nodal_areas(own @ axes[:2].T, [np.arange(len(face))[None, :]]).sum()
+    return compute_nodal_areas(own @ axes[:2].T, [np.arange(len(face))[None, :]]).sum()
 
 
 def test_faces_between_cells_are_not_boundary():
@@ -108,16 +113,16 @@ ROWS = ["0,0,10,1", "10,0,10,2", "10,20,10,1.5", "0,20,10,3"]
 def test_csv_states_its_units(tmp_path):
     field, tilted = FieldReader().read_field(write_csv(tmp_path / "a.csv", ROWS))
     assert tilted is None
-    np.testing.assert_allclose(field.area, 1e-5, rtol=1e-15)
-    np.testing.assert_allclose(field.position[2], [0.01, 0.02], rtol=1e-15)
-    np.testing.assert_allclose(field.pressure, [1e6, 2e6, 1.5e6, 3e6], rtol=1e-15)
+    np.testing.assert_allclose(field.nodal_area, 1e-5, rtol=1e-15)
+    np.testing.assert_allclose(field.node_positions[2], [0.01, 0.02], rtol=1e-15)
+    np.testing.assert_allclose(field.nodal_pressure, [1e6, 2e6, 1.5e6, 3e6], rtol=1e-15)
     again, _ = FieldReader().read_field(_written(tmp_path / "b.csv", field))
-    np.testing.assert_array_equal(again.pressure, field.pressure)
-    np.testing.assert_array_equal(again.position, field.position)
+    np.testing.assert_array_equal(again.nodal_pressure, field.nodal_pressure)
+    np.testing.assert_array_equal(again.node_positions, field.node_positions)
 
 
 def _written(path, field):
-    path.write_text(nodal_result.csv_text(field))
+    path.write_text(nodal_result.format_field_csv(field))
     return path
 
 
@@ -126,7 +131,7 @@ def _written(path, field):
     ("10,20,10,-1", r"line 5: pressure = -1e\+06 Pa is outside \[0, inf\)"),
     ("10,20,0,1", r"line 5: area = 0 m2 is outside \(0, inf\)"),
     ("10,0,10,1", r"line 5: is at the same place as line 4"),
-    ("10,20,10,0", r"line 5: is open \(no pressure\), with 1 of 4 nodes; state keep \(they just touch\)"),
+    ("10,20,10,0", r"line 5: has no pressure, as 1 of 4 nodes .*; state keep \(they just touch\)"),
     ("10,20,10", r"line 5 has 3 columns, expected 4"),
 ])  # fmt: skip
 def test_csv_is_refused_with_the_line(tmp_path, row, message):
@@ -146,17 +151,17 @@ def test_missing_column_and_units_are_refused(tmp_path):
         FieldReader().read_field(DATA / "blocks.frd")
     (tmp_path / "rnd.bin").write_bytes(bytes(range(256)))
     with pytest.raises(
-        ValueError, match=r"suffix '.bin' is of no format known here; state the format, one of"
+        ValueError, match=r"suffix '.bin' belongs to no known format; state the format, one of"
     ):
         FieldReader().read_field(tmp_path / "rnd.bin")
-    with pytest.raises(ValueError, match=r"length = 'mm': a CSV file states units"):
+    with pytest.raises(ValueError, match=r"length = 'mm': leave it out, a CSV file states units"):
         FieldReader(length_unit="mm").read_field(write_csv(tmp_path / "c.csv", ROWS))
 
 
 def test_open_nodes_are_kept_or_left_out(tmp_path):
     path = write_csv(tmp_path / "a.csv", [*ROWS, "5,10,10,0"])
-    assert FieldReader(open_nodes="keep").read_field(path)[0].area.size == 5
-    assert FieldReader(open_nodes="drop").read_field(path)[0].area.size == 4
+    assert FieldReader(open_node_treatment="keep").read_field(path)[0].nodal_area.size == 5
+    assert FieldReader(open_node_treatment="drop").read_field(path)[0].nodal_area.size == 4
 
 
 @pytest.mark.parametrize(("name", "nodes"), [("blocks.frd", 35), ("blocks_quadratic.frd", 21)])
@@ -167,10 +172,10 @@ def test_calculix_result(name, nodes):
     cent of the force on these coarse meshes; 1 % is what the import lets pass.
     """
     field, _ = FieldReader(**UNITS).read_field(DATA / name)
-    assert field.area.size == nodes
-    assert field.area.sum() == pytest.approx(1.2e-3, rel=1e-5)  # five digits of the coordinates
-    assert field.force == pytest.approx(8e3, rel=0.01)
-    assert field.pressure.min() > 1e6
+    assert field.nodal_area.size == nodes
+    assert field.nodal_area.sum() == pytest.approx(1.2e-3, rel=1e-5)  # five digits of the coordinates
+    assert field.normal_force == pytest.approx(8e3, rel=0.01)
+    assert field.nodal_pressure.min() > 1e6
 
 
 def test_nodes_that_calculix_leaves_out_are_open(tmp_path):
@@ -178,20 +183,20 @@ def test_nodes_that_calculix_leaves_out_are_open(tmp_path):
     path = DATA / "blocks_open.frd"
     listed = path.read_text().split(" -4  CONTACT")[1].split(" -3")[0].count("\n -1")
     assert listed < 35
-    with pytest.raises(ValueError, match=r"node \d+: is open \(no pressure\), with 17 of 35 nodes"):
+    with pytest.raises(ValueError, match=r"node \d+: has no pressure, as 17 of 35 nodes"):
         FieldReader(**UNITS).read_field(path)
-    kept, _ = FieldReader(**UNITS, open_nodes="keep").read_field(path)
-    assert kept.area.size == 35
-    assert kept.area.sum() == pytest.approx(1.2e-3, rel=1e-5)  # five digits of the coordinates
-    dropped, _ = FieldReader(**UNITS, open_nodes="drop").read_field(path)
-    assert dropped.area.size == 18
+    kept, _ = FieldReader(**UNITS, open_node_treatment="keep").read_field(path)
+    assert kept.nodal_area.size == 35
+    assert kept.nodal_area.sum() == pytest.approx(1.2e-3, rel=1e-5)  # five digits of the coordinates
+    dropped, _ = FieldReader(**UNITS, open_node_treatment="drop").read_field(path)
+    assert dropped.nodal_area.size == 18
     for field in (kept, dropped):
-        assert field.force == pytest.approx(160e3, rel=1e-3)  # what presses less what draws
+        assert field.normal_force == pytest.approx(160e3, rel=1e-3)  # what presses less what draws
     broken = tmp_path / "a.frd"
     head, contact = path.read_text().split(" -4  CONTACT")
     broken.write_text(head + " -4  CONTACT" + contact.replace(" 0.00000E+00", "         NaN", 1))
-    with pytest.raises(ValueError, match=r"line \d+: .* is not a node with 6 numbers"):
-        FieldReader(**UNITS, open_nodes="keep").read_field(broken)
+    with pytest.raises(ValueError, match=r"line \d+: .* is not a line with a node number and 6 numbers"):
+        FieldReader(**UNITS, open_node_treatment="keep").read_field(broken)
 
 
 def test_middles_of_upright_edges_are_where_calculix_has_them():
@@ -199,8 +204,8 @@ def test_middles_of_upright_edges_are_where_calculix_has_them():
     from jointfmu_tools.inputs.fields import frd
 
     found = frd.read_frd(DATA / "blocks_quadratic.frd", 1e-3, 1e6)
-    for block in found.faces:
-        corners, middles = found.position[block[:, :4]], found.position[block[:, 4:]]
+    for block in found.boundary_faces:
+        corners, middles = found.node_positions[block[:, :4]], found.node_positions[block[:, 4:]]
         expected = 0.5 * (corners + np.roll(corners, -1, axis=1))
         np.testing.assert_allclose(middles, expected, atol=1e-7)  # five digits of 0.02 m
 
@@ -212,7 +217,7 @@ def test_broken_frd_is_refused_with_the_line(tmp_path):
     with pytest.raises(ValueError, match=r"has no result CONTACT .*; there are DISP, DISPLAY"):
         FieldReader(**UNITS).read_field(path)
     path.write_text(text.replace(" -1         1-2.00000E+01", " -1         1-2.0x000E+01", 1))
-    with pytest.raises(ValueError, match=r"line \d+: .* is not a node with 3 numbers"):
+    with pytest.raises(ValueError, match=r"line \d+: .* is not a line with a node number and 3 numbers"):
         FieldReader(**UNITS).read_field(path)
     path.write_text("hello")
     with pytest.raises(ValueError, match="is not a CalculiX result"):
@@ -249,8 +254,8 @@ def test_volume_mesh_of_two_bodies(tmp_path):
         field, _ = FieldReader(
             **UNITS, point_data_name="CPRESS", contact_plane=ContactPlane(body_side=side)
         ).read_field(path)
-        assert field.area.sum() == pytest.approx(8e-6, rel=1e-13)
-        np.testing.assert_allclose(np.sort(field.pressure), np.sort(factor * p) * 1e6, rtol=1e-14)
+        assert field.nodal_area.sum() == pytest.approx(8e-6, rel=1e-13)
+        np.testing.assert_allclose(np.sort(field.nodal_pressure), np.sort(factor * p) * 1e6, rtol=1e-14)
 
 
 @pytest.mark.parametrize("suffix", [".vtk", ".vtu", ".xdmf"])
@@ -265,12 +270,12 @@ def test_surface_mesh_in_another_plane(tmp_path, suffix, enter):
     field, _ = FieldReader(
         **UNITS, point_data_name="p", contact_plane=ContactPlane("x"), file_format="mesh"
     ).read_field(path)
-    np.testing.assert_allclose(1e3 * field.position, points, rtol=1e-12, atol=1e-15)
+    np.testing.assert_allclose(1e3 * field.node_positions, points, rtol=1e-12, atol=1e-15)
     turned, _ = FieldReader(
         **UNITS, point_data_name="p", contact_plane=ContactPlane("x", "z"), file_format="mesh"
     ).read_field(path)
-    np.testing.assert_allclose(turned.position[:, 0], field.position[:, 1])
-    np.testing.assert_allclose(turned.position[:, 1], -field.position[:, 0])
+    np.testing.assert_allclose(turned.node_positions[:, 0], field.node_positions[:, 1])
+    np.testing.assert_allclose(turned.node_positions[:, 1], -field.node_positions[:, 0])
     with pytest.raises(ValueError, match=r"node \d+: lies .* away from the plane z = "):
         FieldReader(**UNITS, point_data_name="p", file_format="mesh").read_field(path)
 
@@ -336,15 +341,15 @@ def test_ansys_listing(tmp_path):
     path = tmp_path / "contact.lis"
     path.write_text(listing(p, points, cells))
     field, _ = FieldReader(**UNITS).read_field(path)
-    np.testing.assert_allclose(field.pressure, 1e6 * p, rtol=1e-5)  # five digits are printed
-    assert field.area.sum() == pytest.approx(8e-6, rel=1e-6)
+    np.testing.assert_allclose(field.nodal_pressure, 1e6 * p, rtol=1e-5)  # five digits are printed
+    assert field.nodal_area.sum() == pytest.approx(8e-6, rel=1e-6)
     corners = np.isin(np.arange(len(p)), cells[:, :4])
     text = listing(p, points, cells).splitlines()
     gone = {f"{i + 11:8d}{3:12.4f}{-1e-6 * i:12.5E}" for i in np.flatnonzero(~corners)}
     path.write_text("\n".join(line for line in text if line[:32] not in gone))
     linear, _ = FieldReader(**UNITS).read_field(path)  # corners alone are listed
-    assert linear.area.size == corners.sum()
-    assert linear.area.sum() == pytest.approx(8e-6, rel=1e-6)
+    assert linear.nodal_area.size == corners.sum()
+    assert linear.nodal_area.sum() == pytest.approx(8e-6, rel=1e-6)
 
 
 def test_ansys_listings_in_parts(tmp_path):
@@ -358,9 +363,9 @@ def test_ansys_listings_in_parts(tmp_path):
     with pytest.raises(ValueError, match=r"has no nodes, a table with .* \(NLIST\); give further listings"):
         FieldReader(**UNITS).read_field(first)
     field, _ = FieldReader(**UNITS, companion_files=(second,)).read_field(first)
-    half = nodal_areas(points, [cells[:1, :3]]).sum()
-    rest = nodal_areas(points, [cells[1:]]).sum()
-    assert field.area.sum() == pytest.approx((half + rest) * 1e-6, rel=1e-5)
+    half = compute_nodal_areas(points, [cells[:1, :3]]).sum()
+    rest = compute_nodal_areas(points, [cells[1:]]).sum()
+    assert field.nodal_area.sum() == pytest.approx((half + rest) * 1e-6, rel=1e-5)
     first.write_text(text[:cut].replace(f"{15:8d}{3:12.4f}", f"{14:8d}{3:12.4f}"))
     with pytest.raises(ValueError, match=r"p.lis: line \d+: node 14 has a second pressure"):
         FieldReader(**UNITS, companion_files=(second,)).read_field(first)

@@ -29,10 +29,10 @@ def test_a_unit_at_the_end_of_a_name(tmp_path):
     words = {"speed": ("joint_speed",), "load": ("axial_load",), "warmth": ("oil_temperature",)}
     path = saved(tmp_path, "joint_speed_rad_per_s,axial_load_kN,oil_temperature_degC,note_s\n1,2,3,4\n")
     found = read_columns(path, spec, 1, words)
-    assert found.units == {"speed": "rad/s", "load": "kN", "warmth": "degC"}
-    assert [float(found.columns[name][0]) for name in spec] == [1.0, 2e3, 3.0]
+    assert found.heading_units == {"speed": "rad/s", "load": "kN", "warmth": "degC"}
+    assert [float(found.values_by_name[name][0]) for name in spec] == [1.0, 2e3, 3.0]
     wrong = saved(tmp_path, "axial_load_mm,speed [rad/s]\n1,2\n")
-    assert list(read_columns(wrong, spec, 1, words).columns) == ["speed"]
+    assert list(read_columns(wrong, spec, 1, words).values_by_name) == ["speed"]
 
 
 @given(st.lists(st.tuples(*[st.floats(allow_nan=False, allow_infinity=False)] * 2), min_size=1, max_size=20))
@@ -42,8 +42,8 @@ def test_round_trip_to_the_last_bit(tmp_path_factory, values):
         tmp_path_factory.mktemp("round"), format_table([("load", "N"), ("angle", "rad")], [load, angle])
     )
     found = read_columns(path, SPEC, 1)
-    np.testing.assert_array_equal(found.columns["load"], load)
-    np.testing.assert_array_equal(found.columns["angle"], angle)
+    np.testing.assert_array_equal(found.values_by_name["load"], load)
+    np.testing.assert_array_equal(found.values_by_name["angle"], angle)
     assert found.line_numbers == list(range(2, 2 + load.size))
 
 
@@ -56,7 +56,10 @@ def test_what_is_written():
         "1,-0.0,1e-30",
         "20,0.6666666666666666,1e+22",
     ]
-    assert format_table(heads, columns, digits=3).splitlines()[1:] == ["1,0,1e-30", "20,0.667,1e+22"]
+    assert format_table(heads, columns, significant_digits=3).splitlines()[1:] == [
+        "1,0,1e-30",
+        "20,0.667,1e+22",
+    ]
     assert format_rows(columns[1:], [2, None], delimiter=" ") == ["0 1e-30", "0.67 1e+22"]
     with pytest.raises(ValueError, match="zip"):
         format_table(heads, [columns[0][:1], *columns[1:]])
@@ -73,14 +76,14 @@ def test_separators_order_and_strangers(tmp_path, mark, encoding):
     head, *rows = map(mark.join, cells)
     lines = ["# by hand", head, "", "  # indented", *rows]
     found = read_columns(saved(tmp_path, "\n".join(lines), encoding), SPEC, 2)
-    np.testing.assert_array_equal(found.columns["load"], [2e3, 4e3])
-    np.testing.assert_allclose(found.columns["angle"], np.radians([1.0, 3.0]), rtol=4e-16)
+    np.testing.assert_array_equal(found.values_by_name["load"], [2e3, 4e3])
+    np.testing.assert_allclose(found.values_by_name["angle"], np.radians([1.0, 3.0]), rtol=4e-16)
     assert found.line_numbers == [5, 6]
 
 
 def test_cells_in_quotes(tmp_path):
     path = saved(tmp_path, 'load [N],"note, or not"\n"1.5","a, b"\n2,"open\n')
-    np.testing.assert_array_equal(read_columns(path, SPEC, 2).columns["load"], [1.5, 2.0])
+    np.testing.assert_array_equal(read_columns(path, SPEC, 2).values_by_name["load"], [1.5, 2.0])
     first, *rest = csv.reader(format_table([("a,b", "N")], [np.ones(1)]).splitlines())
     assert (first, rest) == (["a,b [N]"], [["1.0"]])
 
@@ -93,10 +96,10 @@ def test_cells_in_quotes(tmp_path):
         ("load,angle [deg]\n1,2", r"column 'load' has no unit, expected e.g. load \[N\]"),
         (
             "load [lbf]\n1",
-            r"column 'load' has unit 'lbf', allowed are N, kN and others that measure the same",
+            r"column 'load' has unit 'lbf', allowed are N, kN and other units of the same quantity",
         ),
         ("load [N],Load [kN]\n1,2", r"column 'load' is given twice; state it once"),
-        (f"{HEAD}", r"has 0 points, at least 1 are needed"),
+        (f"{HEAD}", r"has 0 rows of numbers, at least 1 are needed"),
         (f"#\n{HEAD}\n1,2\n\n3", r"line 5 has 1 columns, expected 2"),
         (f"{HEAD}\n1,2\n3,4,5", r"line 3 has 3 columns, expected 2"),
         (f"{HEAD}\n1,2\n3,", r"line 3: angle = '' is not a finite number with a decimal point"),
@@ -134,15 +137,15 @@ def test_a_unit_is_read_as_people_write_it(tmp_path, heads, mark):
     point = "." if mark == "," else ","
     path = saved(tmp_path, f"\ufeff{heads}\n1{point}5{mark}2\n")
     found = read_columns(path, SPEC, 1)
-    assert found.columns["load"] == pytest.approx([1500.0])
-    assert found.columns["angle"] == pytest.approx([2.0 * np.pi / 10800.0])
+    assert found.values_by_name["load"] == pytest.approx([1500.0])
+    assert found.values_by_name["angle"] == pytest.approx([2.0 * np.pi / 10800.0])
 
 
 def test_other_names_of_columns_are_told_by_their_units(tmp_path):
     others = {"load": ("f", "kraft"), "angle": ("f", "winkel")}
     found = read_columns(saved(tmp_path, "F [deg],Kraft [N]\n90,2\n"), SPEC, 1, others)
-    assert found.columns["load"].tolist() == [2.0]
-    assert found.columns["angle"] == pytest.approx([0.5 * np.pi])
+    assert found.values_by_name["load"].tolist() == [2.0]
+    assert found.values_by_name["angle"] == pytest.approx([0.5 * np.pi])
     with pytest.raises(ValueError, match="expected columns"):
         read_columns(saved(tmp_path, "F [Hz],Kraft\n90,2\n"), SPEC, 1, others)
 
@@ -150,4 +153,4 @@ def test_other_names_of_columns_are_told_by_their_units(tmp_path):
 def test_quoted_cells_are_read_as_others(tmp_path):
     path = saved(tmp_path, 'load [N],note,angle [rad]\n1,"a, b",2\n3,c,4\n')
     found = read_columns(path, SPEC, 1)
-    assert [found.columns[name].tolist() for name in ("load", "angle")] == [[1.0, 3.0], [2.0, 4.0]]
+    assert [found.values_by_name[name].tolist() for name in ("load", "angle")] == [[1.0, 3.0], [2.0, 4.0]]

@@ -12,13 +12,13 @@ from typing import Any
 
 import pytest
 from conftest import RELEASED, refused_line
-from jointfmu_fmu_src.joint_parts.c_text import escape_comment, format_string
-from jointfmu_fmu_src.native.data import make_data_block
+from jointfmu_fmu_src.joint_parts.c_text import escape_c_comment, format_string_literal
+from jointfmu_fmu_src.native.data import make_data_struct
 from jointfmu_fmu_src.native.page import make_documentation
-from jointfmu_fmu_src.ssv import ParameterValue, format_parameter_set
+from jointfmu_fmu_src.ssv import ParameterValue, format_ssv_parameter_set
 from jointfmu_fmu_src.xml_parts import format_xml_comment as xml_comment
 from jointfmu_tools.exchange.export import writing
-from jointfmu_tools.exchange.export.placing import SI_UNIT_SET
+from jointfmu_tools.exchange.export.target_model import SI_UNIT_SET
 from jointfmu_tools.exchange.modelica.library import render_library, render_system
 from jointfmu_tools.exchange.robots import urdf
 from jointfmu_tools.exchange.robots.names import make_identifier
@@ -78,14 +78,14 @@ class Tags(HTMLParser):
 
 
 def test_c_compiles_without_warning_and_runs_nothing(tmp_path: Path) -> None:
-    data = make_data_block("Name", "token", [0.0])
-    heads = [data.make_source(f" from the parameters {text!r}").split("\n")[0] for text in TEXTS]
+    data = make_data_struct("Name", "token", [0.0])
+    heads = [data.make_c_source(f" from the parameters {text!r}").split("\n")[0] for text in TEXTS]
     heads += [
-        data.make_source(f" from {text}{end}*/ int x;").split("\n")[0] for text in TEXTS for end in "\0\n\\"
+        data.make_c_source(f" from {text}{end}*/ int x;").split("\n")[0] for text in TEXTS for end in "\0\n\\"
     ]
     bytes_of = ["{" + ", ".join(f"0x{byte:02x}" for byte in text.encode()) + ", 0}" for text in TEXTS]
     checks = [
-        f"{{ const unsigned char meant[] = {meant}; const char written[] = {format_string(text)};\n"
+        f"{{ const unsigned char meant[] = {meant}; const char written[] = {format_string_literal(text)};\n"
         '_Static_assert(sizeof meant == sizeof written, "length");\n'
         "if (memcmp(meant, written, sizeof meant)) return 1; }"
         for text, meant in zip(TEXTS, bytes_of, strict=True)
@@ -100,7 +100,7 @@ def test_c_compiles_without_warning_and_runs_nothing(tmp_path: Path) -> None:
         "",
     ]
     (tmp_path / "main.c").write_text("\n".join(lines), encoding="utf-8")
-    (tmp_path / "data.h").write_text(data.make_header())
+    (tmp_path / "data.h").write_text(data.make_c_header())
     options = ["-std=c11", "-Wall", "-Wextra", "-Werror", "-Wtrigraphs", "-Wcomment", "main.c", "-o", "main"]
     command = [sys.executable, "-m", "ziglang", "cc", *RELEASED, *options]
     subprocess.run(command, cwd=tmp_path, check=True, timeout=300)
@@ -110,9 +110,9 @@ def test_c_compiles_without_warning_and_runs_nothing(tmp_path: Path) -> None:
 
 def test_a_comment_of_c_neither_ends_nor_begins() -> None:
     for text in (*TEXTS, "*//**/*/", "//**//"):
-        assert "*/" not in escape_comment(text)
-        assert "/*" not in escape_comment(text)
-        assert "??" not in escape_comment(text)
+        assert "*/" not in escape_c_comment(text)
+        assert "/*" not in escape_c_comment(text)
+        assert "??" not in escape_c_comment(text)
 
 
 @pytest.mark.parametrize("text", TEXTS)
@@ -125,7 +125,7 @@ def test_toml_gives_the_text_back(text: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("text", TEXTS)
 def test_xml_is_well_formed_and_holds_the_text(text: str) -> None:
-    root = ElementTree.fromstring(format_parameter_set(text, {"a": ParameterValue(1.0, "m", text)}))
+    root = ElementTree.fromstring(format_ssv_parameter_set(text, {"a": ParameterValue(1.0, "m", text)}))
     assert root.get("name") == text
     assert root[0][0].get("description") == text
     lines = [text, f"{text}-", "---"]
@@ -204,7 +204,7 @@ def test_a_system_in_modelica_reads_the_text_as_text(tmp_path: Path) -> None:
 @pytest.mark.parametrize("form", ["csv", "modelica"])
 def test_decks_keep_the_text_in_their_comment(form: str) -> None:
     plain, *found = (
-        writing.export_curve(form, hostile(name), None, SI_UNIT_SET, 1e-3).text.splitlines()
+        writing.export_curve(form, hostile(name), None, SI_UNIT_SET, 1e-3).file_text.splitlines()
         for name in ("plain", TEXTS[3], *(" ".join(TEXTS[i::4]) for i in range(4)))
     )
     for lines in found:

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 from conftest import refused_line
-from jointfmu_fmu_src.naming import MAX_NAME_LENGTH, check_fmu_name
+from jointfmu_fmu_src.naming import MAX_FMU_NAME_LENGTH, check_fmu_name
 
 from jointfmu.joints import MODELS
 
@@ -12,7 +12,7 @@ NAME = next(iter(MODELS))
 ALLOWED = "allowed are at most 63 letters, digits and _, no digit first, no word of C, Python or Modelica"
 
 
-@pytest.mark.parametrize("name", ["A", "_", "ShoulderDrive", "drive_2", "x" * MAX_NAME_LENGTH])
+@pytest.mark.parametrize("name", ["A", "_", "ShoulderDrive", "drive_2", "x" * MAX_FMU_NAME_LENGTH])
 def test_identifiers_are_names(name: str) -> None:
     assert check_fmu_name(name) == name
 
@@ -33,7 +33,7 @@ def test_all_else_is_refused_in_one_line(
 @pytest.mark.parametrize(
     ("words", "part"),
     [
-        ((), f"expected one of {', '.join(MODELS)}"),
+        ((), f"state one FMU of {', '.join(MODELS)}"),
         (tuple(MODELS)[:2], "is for one FMU"),
         ((NAME, "--systems"), "leave out --systems"),
     ],

@@ -13,7 +13,7 @@ from surroundings import full_disk
 
 from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS
-from jointfmu.parameters import ORIGINS, format_parameter_file, load_default, load_parameter_file
+from jointfmu.parameters import VALUE_ORIGINS, format_parameter_file, load_default, load_parameter_file
 from jointfmu.quantity import flatten_fields, flatten_parameters
 
 each_joint = pytest.mark.parametrize("joint", KINDS)
@@ -62,7 +62,7 @@ def test_defaults_say_where_every_value_comes_from(joint):
     numbers = {name for name in flatten_parameters(file.values) if "unit" in declared[name].metadata}
     assert numbers <= set(file.origins)
     for name in file.origins:
-        assert file.origins[name] in ORIGINS
+        assert file.origins[name] in VALUE_ORIGINS
         assert len(file.sources[name]) >= 5, name
         if file.origins[name] == "paper":
             assert any(word in file.sources[name] for word in ("Hu 2023", "Zhao 2018", "Yu 2022")), name
@@ -171,9 +171,9 @@ NAMES = ["H", "mu", "traction_ratio", "A_0", "mass", "critical_area", "n_bolts",
 D = 'D = { value = 1.42, unit = "1", kind = "paper"'
 REFUSED = {
     # name: (what is replaced, by what, words of the message)
-    "schema": ("schema = 1", "schema = 2", ["schema = 2", "allowed is 1"]),
-    "no-schema": ("schema = 1\n", "", ["schema = None", "allowed is 1"]),
-    "schema-true": ("schema = 1", "schema = true", ["schema = True", "allowed is 1"]),
+    "schema": ("schema = 1", "schema = 2", ["schema = 2", "the line schema = 1"]),
+    "no-schema": ("schema = 1\n", "", ["schema = None", "the line schema = 1"]),
+    "schema-true": ("schema = 1", "schema = true", ["schema = True", "the line schema = 1"]),
     "joint": ('"bolted_joint"', '"bolts"', ["joint = 'bolts'", *KINDS]),
     "joint-list": ('"bolted_joint"', '["bolted_joint"]', ["joint = ['bolted_joint']", *KINDS]),
     "no-joint": ('joint = "bolted_joint"\n', "", ["joint = None", *KINDS]),
@@ -195,8 +195,8 @@ REFUSED = {
         ["H", "unit 'MPa'", "expected 'Pa'"],
     ),
     "no-unit": (D, D.replace('unit = "1", ', ""), ["surface.D", "unit None", "expected '1'"]),
-    "kind": (D, D.replace("paper", "guess"), ["surface.D", "kind = 'guess'", *ORIGINS]),
-    "no-kind": (D, D.replace(', kind = "paper"', ""), ["surface.D", "kind = None", *ORIGINS]),
+    "kind": (D, D.replace("paper", "guess"), ["surface.D", "kind = 'guess'", *VALUE_ORIGINS]),
+    "no-kind": (D, D.replace(', kind = "paper"', ""), ["surface.D", "kind = None", *VALUE_ORIGINS]),
     "key": (D, D + ', error = "5 %"', ["surface.D", "'error'", "value", "unit", "kind", "source"]),
     "string": ("value = 1.42", 'value = "1.42"', ["surface.D = '1.42'", "not a number"]),
     "bool": ("value = 1.42", "value = true", ["surface.D = True", "not a number"]),
@@ -399,10 +399,10 @@ def test_former_kinds_are_read_by_their_present_names(tmp_path):
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        (f"a = {'[' * 5000}{']' * 5000}", "deeper than any file of this package"),
-        (f"a{'.a' * 5000} = 1", "deeper than any file of this package"),
-        (f"schema = {'9' * 5000}", "an integer of more digits"),
-        (f"schema = {'9' * 4000}", "allowed is 1"),
+        (f"a = {'[' * 5000}{']' * 5000}", "too many brackets or tables inside each other"),
+        (f"a{'.a' * 5000} = 1", "too many brackets or tables inside each other"),
+        (f"schema = {'9' * 5000}", "an integer of too many digits"),
+        (f"schema = {'9' * 4000}", "expected the line schema = 1"),
     ],
 )
 def test_a_hostile_file_is_named_in_one_line(file, text, said):

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from jointfmu_fmu_src.partners import PARTNERS, load_partner_parameters, models
 
-from jointfmu.parameters import ORIGINS
+from jointfmu.parameters import VALUE_ORIGINS
 from jointfmu.quantity import flatten_parameters
 
 SHIPPED = Path(__file__).resolve().parents[2] / "models" / "partners"
@@ -20,7 +20,7 @@ def test_a_file_gives_every_parameter_with_its_source(name: str) -> None:
     file = load_partner_parameters(name)
     assert isinstance(file.values, PARTNERS[name].parameter_class)
     assert set(flatten_parameters(file.values)) == set(file.origins) == set(file.sources)
-    assert set(file.origins.values()) <= set(ORIGINS)
+    assert set(file.origins.values()) <= set(VALUE_ORIGINS)
 
 
 @pytest.mark.parametrize(
@@ -32,7 +32,7 @@ def test_a_file_gives_every_parameter_with_its_source(name: str) -> None:
             "partner = 'Mass', expected 'TranslationalMass'",
         ),
         ('partner = "TranslationalMass"\n', "", "partner = None, expected 'TranslationalMass'"),
-        ("schema = 1", "schema = 2", "schema = 2, allowed is 1"),
+        ("schema = 1", "schema = 2", "schema = 2, expected the line schema = 1"),
         ('unit = "kg"', 'unit = "g"', "m: unit 'g', expected 'kg'"),
         ("value = 100.0", "value = -1.0", "m = -1 kg is outside (0, inf): mass"),
         ("lag_b", "lag_c", "unknown name 'lag_c'"),

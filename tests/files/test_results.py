@@ -10,7 +10,7 @@ from jointfmu_fmu_src.native.compiled.compiled_models import get_stored_result
 from surroundings import environment
 
 from jointfmu.files import results
-from jointfmu.files.results import compute_once, set_result_store
+from jointfmu.files.results import compute_or_load_array, set_result_store
 
 PROGRAM = """
 import sys
@@ -43,7 +43,7 @@ def test_a_result_is_computed_once_for_each_name_and_argument(store):
 
     ones, twos = np.ones(3), np.full(3, 2.0)
     for name, arguments in (("a", [ones]), ("a", [ones]), ("b", [ones]), ("a", [twos]), ("a", [ones, ones])):
-        found = compute_once(name, arguments, compute)
+        found = compute_or_load_array(name, arguments, compute)
         np.testing.assert_array_equal(found, np.arange(6.0).reshape(2, 3) / 7.0)
         found[0, 0] = 1.0  # it belongs to the caller
     assert len(counted) == len(store) == 4

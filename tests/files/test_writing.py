@@ -6,7 +6,7 @@ from conftest import refused_line
 from jointfmu_tools import cli
 from surroundings import full_disk
 
-from jointfmu.files.outputs import EXCHANGE_FILE, OUTPUT_FOLDER, check_output
+from jointfmu.files.outputs import EXPORTED_TEXT_FILE, OUTPUT_FOLDER, check_output
 from jointfmu.files.writing import write_files
 
 FILES = {"package.mo": "one\n", "Data/package.mo": "two\n", "Data/order": "three\n"}
@@ -43,11 +43,15 @@ def test_a_full_disk_leaves_what_was_there(tmp_path, there):
 
 
 def test_a_check_leaves_nothing_and_refuses_what_is_in_the_way(tmp_path):
-    check_output(tmp_path / "a" / "b.csv", EXCHANGE_FILE)
+    check_output(tmp_path / "a" / "b.csv", EXPORTED_TEXT_FILE)
     check_output(tmp_path / "a" / "b", OUTPUT_FOLDER)
     assert everything(tmp_path) == []
     (tmp_path / "file").write_text("")
-    for kind, path in ((EXCHANGE_FILE, "file/a.csv"), (OUTPUT_FOLDER, "file"), (OUTPUT_FOLDER, "file/a")):
+    for kind, path in (
+        (EXPORTED_TEXT_FILE, "file/a.csv"),
+        (OUTPUT_FOLDER, "file"),
+        (OUTPUT_FOLDER, "file/a"),
+    ):
         with pytest.raises(ValueError, match=r"cannot be written \(.*file: Not a directory\)"):
             check_output(tmp_path / path, kind)
 

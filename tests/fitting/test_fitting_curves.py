@@ -10,10 +10,10 @@ from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.common import columns
 from jointfmu_tools.inputs.fitting.backbone import find_backbone
-from jointfmu_tools.inputs.fitting.least_squares import Unknown, solve
+from jointfmu_tools.inputs.fitting.least_squares import Unknown, solve_least_squares
 from jointfmu_tools.joints.bolted_joint.fit import preload
 from jointfmu_tools.joints.harmonic_drive.fit import torque_angle
-from jointfmu_tools.joints.harmonic_drive.fit.drive import wind_up
+from jointfmu_tools.joints.harmonic_drive.fit.drive import compute_wind_up
 from oracles import curve_measurements as measurements
 from oracles.joint_measurements import save
 from surroundings import environment
@@ -46,7 +46,7 @@ def test_a_line_has_its_textbook_covariance():
     rng, x = np.random.default_rng(1), np.geomspace(1.0, 10.0, 50)
     y = np.log(3.0 * x**0.7) + 0.01 * rng.standard_normal(x.size)
     unknowns = [Unknown("a", "1", 1.0, 0.0, np.inf), Unknown("b", "1", 1.0, 0.0, np.inf)]
-    found = solve(unknowns, lambda v: np.log(v["a"] * x ** v["b"]) - y)
+    found = solve_least_squares(unknowns, lambda v: np.log(v["a"] * x ** v["b"]) - y)
     b, ln_a = np.polyfit(np.log(x), y, 1)
     # the ridge is 1e-4 of a data point's weight, the data count 50
     assert found.values["b"] == pytest.approx(b, rel=1e-4)
@@ -90,7 +90,7 @@ def test_the_loop_of_a_drive_has_its_midline():
     torque."""
     line = find_backbone(*measurements.loops(np.random.default_rng(1), noise=0.0, drift=0.0))
     drive = load_default("harmonic_drive").with_values(measurements.DRIVE, "user", "true").values
-    rest = line.angle - 5.0 * ARCMIN - wind_up(drive, line.torque)
+    rest = line.angle - 5.0 * ARCMIN - compute_wind_up(drive, line.torque)
     # 0.5 mN m of noise in the torque moves the angle by 2e-3 arcmin where the drive is soft
     assert np.max(np.abs(rest)) < 0.01 * ARCMIN
 
@@ -110,7 +110,7 @@ def test_torque_before_angle_before_unit(loops, tmp_path):
 def test_one_direction_has_no_loop():
     drive = load_default("harmonic_drive").values
     torque = np.linspace(0.0, 20.0, 100)
-    line = find_backbone(torque, wind_up(drive, torque))
+    line = find_backbone(torque, compute_wind_up(drive, torque))
     assert (line.loop_area, line.backlash, line.drift) == (None, None, None)
     np.testing.assert_array_equal(line.torque, torque)
 
@@ -119,7 +119,7 @@ def test_single_open_loop_has_no_drift():
     drive = load_default("harmonic_drive").values
     torque = np.concatenate([np.linspace(-9.0, 9.0, 200), np.linspace(9.0, -9.0, 200)])
     gap = 1e-4 * np.repeat([-0.5, 0.5], 200) * (1.0 - (torque / 9.0) ** 2)
-    line = find_backbone(torque, wind_up(drive, torque) + gap)
+    line = find_backbone(torque, compute_wind_up(drive, torque) + gap)
     assert line.drift is None
     assert line.backlash[0] == pytest.approx(1e-4, rel=0.01)  # polygon of 20 pieces
     assert line.loop_area[0] == pytest.approx(2.0 / 3.0 * 1e-4 * 18.0, rel=0.01)
@@ -127,8 +127,8 @@ def test_single_open_loop_has_no_drift():
 
 def test_what_is_not_determined_is_said_by_name(loops):
     """The result names the undetermined combination: drive_scale and mean_over_peak act only as a product."""
-    found = torque_angle.fit(loops, fitted_names=[*torque_angle.FITTED_PARAMETERS, "mean_over_peak"])
-    rows = {row["name"]: row["determined"] for row in found.unknown_rows()}
+    found = torque_angle.fit(loops, fitted_names=[*torque_angle.DEFAULT_FITTED_PARAMETERS, "mean_over_peak"])
+    rows = {row["name"]: row["determined"] for row in found.list_fitted_parameters()}
     assert rows == {
         "K_FTS0": True,
         "drive_scale": False,
@@ -171,8 +171,8 @@ def test_written_file_says_where_it_comes_from(loops, tmp_path, enter, capsys):
     file = load_parameter_file(out, "harmonic_drive")
     assert {
         n for n, s in file.sources.items() if s.startswith("fitted to loops.csv, 2026-01-01, torque -2")
-    } == {*torque_angle.FITTED_PARAMETERS}
-    assert {file.origins[name] for name in torque_angle.FITTED_PARAMETERS} == {"calibration"}
+    } == {*torque_angle.DEFAULT_FITTED_PARAMETERS}
+    assert {file.origins[name] for name in torque_angle.DEFAULT_FITTED_PARAMETERS} == {"calibration"}
     assert document["parameters"]["K_FTS0"] == file.values.K_FTS0
     assert picture.read_bytes().startswith(b"\x89PNG")
 
@@ -184,24 +184,24 @@ def test_written_file_says_where_it_comes_from(loops, tmp_path, enter, capsys):
 def test_joint_stiffness_is_the_exported_one(direction):
     """The stiffness of the fit equals that of the FMU, also at 20 N preload, where most nodes still close."""
     joint = load_default("bolted_joint").values
-    spring = BoltedJointSpring.for_interface_nodes(replace(joint, memory=False))
+    spring = BoltedJointSpring.from_interface_nodes(replace(joint, memory=False))
     loads = np.array([20.0, 2e3, 3e4])
     name = {"normal": "K_zz", "tangential": "K_xx"}[direction]
     exported = [spring.evaluate(load, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))[name] for load in loads]
     # the table's error
-    np.testing.assert_allclose(preload.joint_stiffness(joint, loads, direction), exported, rtol=1e-8)
+    np.testing.assert_allclose(preload.compute_joint_stiffness(joint, loads, direction), exported, rtol=1e-8)
 
 
 def test_area_has_no_effect(stiffness):
     """The law depends on loads, not on pressures, so another start value of the area stays unchanged."""
     start = load_default("bolted_joint").with_values({"A_0": 0.05}, "user", "test")
     found = preload.fit(stiffness, start, ["surface.D", "surface.G", "A_0"])
-    rows = {row["name"]: row["determined"] for row in found.unknown_rows()}
+    rows = {row["name"]: row["determined"] for row in found.list_fitted_parameters()}
     assert rows == {"surface.D": True, "surface.G": True, "A_0": False}
     assert found.solution.values["A_0"] == pytest.approx(0.05, rel=0.01)  # held by the ridge
 
 
-def test_frequency_without_mass_keeps_the_surface(tmp_path):
+def test_frequencies_without_a_stated_mass_fit_the_mass(tmp_path):
     path = save(
         tmp_path / "f.csv",
         "preload [N], frequency [Hz]",
@@ -216,8 +216,10 @@ def test_series_stiffness_is_in_series(tmp_path):
     """Joint and structure act in series: the stiffness is K/2 if both have the stiffness K."""
     joint = load_default("bolted_joint").values
     P = np.array([1e4])
-    K = float(preload.joint_stiffness(joint, P)[0])
-    assert preload.PreloadCurve("stiffness", P, P).predict(joint, K, "normal") == pytest.approx([K / 2.0])
+    K = float(preload.compute_joint_stiffness(joint, P)[0])
+    assert preload.PreloadCurve("stiffness", P, P).predict_quantity(joint, K, "normal") == pytest.approx(
+        [K / 2.0]
+    )
 
 
 # Bad data
@@ -244,7 +246,7 @@ BAD = {
     "foreign unit": ("torque [lbf.in], angle [rad]", "unit 'lbf.in', allowed are N.m, mN.m, kN.m"),
     "one column": (["torque [N.m], other [rad]", *GOOD], "has no column 'angle'; expected angle [rad"),
     "twice": ("torque [N.m], torque [N.m], angle [rad]", "given twice"),
-    "few": ([HEADING, *GOOD[:9]], "has 9 points, at least 10 are needed"),
+    "few": ([HEADING, *GOOD[:9]], "has 9 rows of numbers, at least 10 are needed"),
     "nan": ([HEADING, *GOOD, "nan,1"], "line 22: torque = 'nan' is not a finite"),
     "ragged": ([HEADING, *GOOD, "1"], "line 22 has 1 columns, expected 2"),
     "constant": ([HEADING, *["2,1"] * 12], "torque is 2 N.m throughout"),
@@ -285,7 +287,7 @@ def test_units_of_a_record_do_not_matter(force, times, turn, by, tmp_path):
         path = tmp_path / "curve.csv"
         rows = (f"{T * x!r},{(T / 5e3 - T**3 / 1e6) * y!r}" for T in np.linspace(-5.0, 5.0, 30).tolist())
         path.write_text("\n".join([head, *rows]))
-        found.append(columns.read_columns(path, torque_angle.COLUMN_UNITS, 10).columns)
+        found.append(columns.read_columns(path, torque_angle.COLUMN_UNITS, 10).values_by_name)
     for name, column in found[0].items():
         assert found[1][name] == pytest.approx(column, rel=1e-14, abs=1e-18)
 
@@ -294,7 +296,7 @@ def test_titles_are_those_of_loops(tmp_path):
     path = tmp_path / "curve.csv"
     rows = (f"{T / 5e3 - T**3 / 1e6};{T}" for T in np.linspace(-5.0, 5.0, 30))
     path.write_text("\n".join(["Winkel (rad);Drehmoment / Nm", *rows]))
-    assert torque_angle.read_curve(path, None, None).midline.torque == pytest.approx(
+    assert torque_angle.read_torque_angle_curve(path, None, None).midline.torque == pytest.approx(
         np.linspace(-5.0, 5.0, 30)
     )
 
@@ -313,13 +315,13 @@ RISING = ["1e3,1e9", "2e3,2e9", "3e3,3e9", "4e3,4e9"]
             "has 1 different preloads, too few for surface.D and",
         ),
         ([*RISING[:1]] * 3, ("--free", "surface.D", "surface.G"), "at least 2 are needed"),
-        (("1e3,4e9", "2e3,3e9", "3e3,2e9", "4e3,1e9"), (), "does not rise with the preload"),
+        (("1e3,4e9", "2e3,3e9", "3e3,2e9", "4e3,1e9"), (), "falls with the preload"),
         (RISING, ("--free", "surface.D", "surface.G", "H", "A_0"), "too few for 4 unknowns"),
         (RISING, ("--free", "surface.X"), "'surface.X' is not a parameter to fit; allowed are surface.D"),
         (RISING, ("--free", "H", "H"), "'H' is given twice"),
-        (RISING, ("--modal-mass", "5"), "the file has stiffnesses, no frequencies"),
+        (RISING, ("--modal-mass", "5"), "the file has stiffnesses; leave it out"),
         (RISING, ("--series-stiffness", "-1"), "series stiffness = -1 N/m is outside (0, inf)"),
-        (RISING, ("--plot", "fit.pdf"), "'.pdf' is not a picture"),
+        (RISING, ("--plot", "fit.pdf"), "'.pdf' is not that of a picture"),
     ],
 )
 def test_bad_preload(rows, options, message, tmp_path, capsys):
@@ -349,23 +351,23 @@ def test_one_measured_number_fits_the_level(tmp_path, quantity):
     """For a joint twice as stiff, the exponent is unchanged and the law passes through the point."""
     start = load_default("bolted_joint")
     P = np.array([12e3])
-    K = 2.0 * float(preload.joint_stiffness(start.values, P)[0])
+    K = 2.0 * float(preload.compute_joint_stiffness(start.values, P)[0])
     value = K if quantity == "stiffness" else np.sqrt(K / 50.0) / (2.0 * np.pi)
     unit = {"stiffness": "N/m", "frequency": "Hz"}[quantity]
     path = save(tmp_path / "one.csv", f"preload [N], {quantity} [{unit}]", P, np.array([value]))
     found = preload.fit(path, start, modal_mass=None if quantity == "stiffness" else 50.0)
     assert set(found.solution.values) == {"surface.G"}
-    assert preload.joint_stiffness(found.parameters.values, P) == pytest.approx([K], rel=1e-4)
+    assert preload.compute_joint_stiffness(found.parameters.values, P) == pytest.approx([K], rel=1e-4)
     assert found.rejection_reason() is None
-    assert any("one preload determines the level alone: surface.D" in line for line in found.warnings())
-    assert any("the intervals are those of 5% for each point" in line for line in found.warnings())
+    assert any("one preload does not determine the exponent: surface.D" in line for line in found.warnings())
+    assert any("the intervals assume 5% for each point" in line for line in found.warnings())
     assert "power" not in found.facts
 
 
 def test_one_measured_number_sets_the_height_of_a_roughness(tmp_path):
     start = rough_joint()
     P = np.array([12e3])
-    K = 0.5 * float(preload.joint_stiffness(start.values, P)[0])
+    K = 0.5 * float(preload.compute_joint_stiffness(start.values, P)[0])
     path = save(tmp_path / "one.csv", "preload [N], stiffness [N/m]", P, np.array([K]))
     found = preload.fit(path, start)
     assert found.solution.values["h"] == pytest.approx(2.0 * start.values.h, rel=0.05)
@@ -375,7 +377,10 @@ def test_one_measured_number_sets_the_height_of_a_roughness(tmp_path):
 def test_measured_stiffnesses_set_the_level_of_a_table(tmp_path):
     start, P = load_default("bolted_joint", "table"), np.array([4e3, 12e3])
     path = save(
-        tmp_path / "k.csv", "preload [N], stiffness [N/m]", P, 1.4 * preload.joint_stiffness(start.values, P)
+        tmp_path / "k.csv",
+        "preload [N], stiffness [N/m]",
+        P,
+        1.4 * preload.compute_joint_stiffness(start.values, P),
     )
     found = preload.fit(path, start)
     assert found.solution.values == pytest.approx({"table.factor": 1.4}, rel=1e-6)
@@ -398,12 +403,14 @@ def test_two_measured_numbers_fit_level_and_exponent(tmp_path):
     start = load_default("bolted_joint")
     truth = start.with_values({"surface.D": 1.3, "surface.G": 3e-8}, "user", "test").values
     P = np.array([3e3, 20e3])
-    path = save(tmp_path / "two.csv", "preload [N], stiffness [N/m]", P, preload.joint_stiffness(truth, P))
+    path = save(
+        tmp_path / "two.csv", "preload [N], stiffness [N/m]", P, preload.compute_joint_stiffness(truth, P)
+    )
     found = preload.fit(path, start)
     assert found.solution.values == pytest.approx({"surface.D": 1.3, "surface.G": 3e-8}, rel=0.01)
 
 
-def test_neither_or_both(tmp_path, capsys):
+def test_a_file_without_stiffness_and_frequency_is_refused(tmp_path, capsys):
     path = tmp_path / "bad.csv"
     path.write_text("preload [N]\n1\n2\n3\n4\n")
     line = refused_line(capsys, "fit", "preload", path, "--params", started(tmp_path))
@@ -418,7 +425,7 @@ def test_zero_cannot_be_fitted(loops, capsys):
 def test_another_joints_file(loops, tmp_path, capsys):
     path = tmp_path / "bolts.toml"
     path.write_text(format_parameter_file(load_default("bolted_joint")))
-    assert "expected a parameter file of a 'harmonic_drive'" in refused_line(
+    assert "expected a file with joint = 'harmonic_drive'" in refused_line(
         capsys, "fit", "torque-angle", loops, "--params", path
     )
 

@@ -11,11 +11,15 @@ from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.inputs.fitting import branches, decay
 from jointfmu_tools.inputs.fitting.hysteresis import HysteresisLaw, NonlinearSpring, Oscillator
-from jointfmu_tools.inputs.fitting.least_squares import Solution, Unknown
-from jointfmu_tools.inputs.fitting.measurement import MIN_MEASUREMENT_ROW_COUNT, ColumnNames, read_columns
+from jointfmu_tools.inputs.fitting.least_squares import FitSolution, Unknown
+from jointfmu_tools.inputs.fitting.measurement import (
+    MIN_MEASUREMENT_ROW_COUNT,
+    MeasurementColumns,
+    read_columns,
+)
 from jointfmu_tools.inputs.fitting.outcome import FitPlot, FitResult
 from jointfmu_tools.joints.bolted_joint.fit import loop
-from jointfmu_tools.joints.harmonic_drive.fit.hysteresis import COLUMN_NAMES as DRIVE_HEADS
+from jointfmu_tools.joints.harmonic_drive.fit.hysteresis import LOOP_COLUMN_NAMES as DRIVE_HEADS
 from oracles import joint_measurements as measurements
 
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
@@ -37,7 +41,7 @@ def test_first_loading_is_the_normal_curve_once_more():
     its nodes."""
     joint = load_default("bolted_joint").values
     law, told = loop.make_shear_loop_law(joint, PRELOAD)
-    spring = BoltedJointSpring.for_interface_nodes(joint)
+    spring = BoltedJointSpring.from_interface_nodes(joint)
 
     def state(apart):
         return spring.evaluate(PRELOAD, 0.0, (0.0, 0.0, apart), (0.0, 0.0, 0.0))
@@ -98,7 +102,7 @@ def test_free_vibration_agrees_with_integration_in_time():
     own estimate."""
     found = decay.analyse_decay(*measurements.joint_decay())
     law, mass = measurements.joint_law(), measurements.MASS
-    frequency, damping = Oscillator(law, mass).free_vibration(found.amplitude)
+    frequency, damping = Oscillator(law, mass).free_vibration(found.motion_amplitude)
     assert np.all(np.abs(found.frequency / frequency - 1.0) < found.frequency_deviation + 2e-4)
     assert np.all(np.abs(found.damping_ratio / damping - 1.0) < found.damping_deviation / damping + 5e-3)
     assert found.damping_ratio[0] > 2.0 * found.damping_ratio[-1]
@@ -125,12 +129,12 @@ def test_branches_follow_their_law():
     run, motion, force = joint_loops()
     parts = [("", motion[run == k], force[run == k]) for k in (1.0, 2.0)]
     found = branches.cut_branches(parts)
-    assert found.start_motion.size == 6  # three turning points inside each run of two periods
+    assert found.branch_start_motion.size == 6  # three turning points inside each run of two periods
     law = measurements.joint_law()
-    _, start, rest = found.fit_turning_points(law, np.full(found.motion.size, 30.0))
+    _, start, rest = found.fit_turning_points(law, np.full(found.joint_motion.size, 30.0))
     # the noise is 0.3 % of the force, and 0.1 % of the motion
-    assert np.std(rest[found.run_index == 1]) < 6e-3 * force.max()
-    np.testing.assert_allclose(np.abs(start[found.start_motion > 3e-6]), 6e-6, rtol=5e-3)
+    assert np.std(rest[found.run_of_sample == 1]) < 6e-3 * force.max()
+    np.testing.assert_allclose(np.abs(start[found.branch_start_motion > 3e-6]), 6e-6, rtol=5e-3)
 
 
 def test_a_branch_ends_where_it_passes_the_turning_point_before():
@@ -140,7 +144,10 @@ def test_a_branch_ends_where_it_passes_the_turning_point_before():
     motion = np.concatenate([np.linspace(a, b, 50, endpoint=False) for a, b in pairwise(turns)])
     found = branches.cut_branches([("", motion, motion)])
     ends = [
-        (found.motion[found.branch_index == k].min(), found.motion[found.branch_index == k].max())
+        (
+            found.joint_motion[found.branch_of_sample == k].min(),
+            found.joint_motion[found.branch_of_sample == k].max(),
+        )
         for k in range(3)
     ]
     assert ends[0][0] == pytest.approx(-1.5, abs=0.1)
@@ -187,7 +194,10 @@ def test_noise_does_not_widen_the_loops():
     rng = np.random.default_rng(1)
     motion = np.cos(np.linspace(1.0, 99.0, 98 * 300)) + 1e-3 * rng.standard_normal(98 * 300)
     turns = branches.find_turning_points(motion)
-    values = [abs(branches.refine_turning_point(motion, k, branches.noise_deviation(motion))) for k in turns]
+    values = [
+        abs(branches.refine_turning_point(motion, k, branches.estimate_noise_deviation(motion)))
+        for k in turns
+    ]
     assert turns.size == 31
     assert np.mean(np.abs(motion[turns])) > 1.0 + 1.5e-3
     assert np.mean(values) == pytest.approx(1.0, abs=4e-4)
@@ -197,7 +207,7 @@ def test_motion_at_the_turning_points_is_part_of_the_doubt():
     """The turning points of a coarsely sampled motion have a deviation of the order of half a step."""
     motion = np.abs((np.arange(200) * 0.07 + 0.03) % 4.0 - 2.0)
     found = branches.cut_branches([("", motion, 2.0 * motion)])
-    assert np.all(found.start_motion_deviation > 0.02)
+    assert np.all(found.branch_start_motion_deviation > 0.02)
 
 
 # Round trips
@@ -320,7 +330,7 @@ def test_a_growing_vibration_is_refused(tmp_path, capsys):
         ([*VIBRATION, "--damping-ratio", "0.5"], "damping ratio = 0.5 is outside [0, 0.3)"),
         (
             [*VIBRATION, "--inertia", "1"],
-            "is of a bolted_joint; --inertia is allowed with a harmonic_drive only",
+            "has the columns of a bolted_joint; --inertia is for a harmonic_drive only",
         ),
         (["--preload", "1e9", "--modal-mass", "50"], "allowed is up to"),
         ([*VIBRATION, "--free", "surface.X"], "'surface.X' is not a parameter to fit"),
@@ -337,7 +347,7 @@ def test_options_that_are_refused(options, message, tmp_path, capsys):
         ("run [1], displacement [um], force [kN]", "in mm, where the heading says um, or the force is in N,"),
     ],
 )
-def test_a_stiffness_of_another_unit_is_asked_back(heading, message, tmp_path, capsys):
+def test_a_stiffness_in_a_wrong_unit_is_questioned(heading, message, tmp_path, capsys):
     run, motion, force = joint_loops()
     path = write(tmp_path, heading, run, 1e6 * motion, force)
     line = refused_line(capsys, "fit", "loop", path, "--preload", "9e3", "--out", tmp_path / "joint.toml")
@@ -383,7 +393,7 @@ def test_a_record_needs_samples_and_periods(tmp_path, capsys):
 
 
 def test_kinds_of_files(tmp_path):
-    heads = ColumnNames("force", "displacement", unit_sizes("N"), unit_sizes("m", "um"))
+    heads = MeasurementColumns("force", "displacement", unit_sizes("N"), unit_sizes("m", "um"))
     for names, kind in (
         ("displacement [um], force [N], time [s]", "loops"),
         ("time [s], displacement [um]", "decay"),
@@ -448,7 +458,7 @@ def test_a_structure_in_series_is_told_from_the_joint(tmp_path):
             assert abs(np.log(one.solution.values[name] / want)) < 4.0 * deviation, name
         assert one.facts["shear_stiffness"][0] == pytest.approx(joint, rel=0.02)
     assert rigid.facts["shear_stiffness"][0] < 0.5 * joint
-    with pytest.raises(ValueError, match="the data show joint and structure together"):
+    with pytest.raises(ValueError, match="joint and structure together have this stiffness"):
         fitted(series_stiffness=0.1 * joint)
 
 
@@ -468,8 +478,8 @@ def test_runs_of_their_own_size_have_their_own_noise():
     force[run == 2.0] += 1e3 * np.random.default_rng(2).standard_normal(np.count_nonzero(run == 2.0))
     found = branches.cut_branches([("", motion[run == k], force[run == k]) for k in (1.0, 2.0)])
     rest = found.fit_turning_points(measurements.joint_law(), found.residual_scale)[2]
-    assert np.std(rest[found.run_index == 1]) > 20.0 * np.std(rest[found.run_index == 0])
-    assert replace(found, widest_loops=()).noise_groups is found.run_index
+    assert np.std(rest[found.run_of_sample == 1]) > 20.0 * np.std(rest[found.run_of_sample == 0])
+    assert replace(found, widest_loops=()).noise_group_of_residual is found.run_of_sample
 
 
 @pytest.mark.slow
@@ -482,7 +492,7 @@ def test_level_and_exponent_of_a_vibration_go_along_the_valley_of_its_stiffness(
         x * np.exp(s * rng.standard_normal(25)) for x, s in ((frequency, 1e-4), (damping, 0.01))
     )
     path = write(tmp_path, "displacement [um], frequency [Hz], damping [1]", 1e6 * a, frequency, damping)
-    names = list(loop.FITTED_PARAMETERS["zhao2018"])
+    names = list(loop.DEFAULT_FITTED_PARAMETERS["zhao2018"])
     found = loop.fit(path, fitted_names=names, preload=PRELOAD, modal_mass=measurements.MASS)
     for name, deviation in found.solution.relative_deviations.items():
         assert abs(np.log(found.solution.values[name] / measurements.JOINT[name])) < 3.0 * deviation, name
@@ -508,7 +518,7 @@ def test_titles_as_people_write_them(tmp_path, titles):
     (tmp_path / "a.csv").write_text(f"{titles}\n{rows}")
     kind, table = read_columns(tmp_path / "a.csv", DRIVE_HEADS)
     assert kind == "loops"
-    assert table.columns["torque"].tolist() == [2 * a for a in table.columns["angle"]]
+    assert table.values_by_name["torque"].tolist() == [2 * a for a in table.values_by_name["angle"]]
 
 
 @pytest.mark.slow
@@ -531,13 +541,26 @@ def test_a_fit_that_says_nothing_is_not_written(tmp_path, capsys, enter):
     assert load_parameter_file("bar.toml", "bolted_joint").values_by_name["mu"] > 0.0
 
 
+REMEDY = "fit other parameters, or add data"
+
+
 @pytest.mark.parametrize(
     ("stuck", "deviation", "h", "says"),
     [
-        (("mu", "h"), 0.01, 1e-6, "mu, h ended on a bound of their intervals"),
-        (("mu",), 0.01, 1e-6, "mu ended on a bound of its interval"),
+        (
+            ("mu", "h"),
+            0.01,
+            1e-6,
+            f"mu, h ended on a bound of their intervals; {REMEDY}",
+        ),
+        (("mu",), 0.01, 1e-6, f"mu ended on a bound of its interval; {REMEDY}"),
         ((), 0.01, 1e-6, None),
-        ((), 10.0, 1e-6, "the data determine none of mu, h, nor a combination of them"),
+        (
+            (),
+            10.0,
+            1e-6,
+            f"the data determine none of mu, h, nor a combination of them; {REMEDY}",
+        ),
         (
             (),
             0.01,
@@ -552,6 +575,6 @@ def test_what_a_fit_does_not_say(stuck, deviation, h, says):
     wanted = tuple(Unknown(name, "1", 0.1, 1e-3, 10.0) for name in ("mu", "h"))
     seen, nothing = np.eye(2), np.zeros(2)
     values = {"mu": 0.1, "h": h}
-    solution = Solution(wanted, values, nothing, deviation, seen, deviation**2 * seen, stuck, None)
+    solution = FitSolution(wanted, values, nothing, deviation, seen, deviation**2 * seen, stuck, None)
     picture = FitPlot(nothing, nothing, nothing, (nothing, nothing), ("", "", ""))
     assert FitResult(load_default("bolted_joint"), solution, {}, picture).rejection_reason() == says

@@ -107,7 +107,7 @@ def test_loops_that_bear_after_slip_are_named(tmp_path, capsys):
     assert "slips at about" in line
     assert "through a clearance" in line
     assert "then bears" in line
-    assert cut(*jenkins_loop(5e-6, 800)).find_bearing() is None
+    assert cut(*jenkins_loop(5e-6, 800)).find_clearance_slip() is None
 
 
 def test_noise_is_no_bearing():
@@ -117,7 +117,7 @@ def test_noise_is_no_bearing():
         motion + 1e-3 * 2e-6 * rng.standard_normal(motion.size),
         force + 0.02 * SLIP_FORCE * rng.standard_normal(force.size),
     )
-    assert noisy.find_bearing() is None
+    assert noisy.find_clearance_slip() is None
     assert noisy.slip_force == pytest.approx(SLIP_FORCE, rel=0.02)
 
 
@@ -127,7 +127,7 @@ def test_noise_on_a_loop_that_sticks_is_no_bearing(samples):
     for noise in (0.003, 0.02, 0.05):
         motion, force = jenkins_loop(1e-7, samples, cycles=3, slip_force=1e9)
         force = force + noise * np.ptp(force) * rng.standard_normal(force.size)
-        assert cut(motion, force).find_bearing() is None
+        assert cut(motion, force).find_clearance_slip() is None
 
 
 def test_a_plausible_slip_force_leaves_the_displacement_alone(tmp_path, capsys):

@@ -15,19 +15,21 @@ from jointfmu.parameters import load_default
 HYSTERESIS = {"hysteresis_loss": 3.5e-4, "hysteresis_stiffness": 6000.0}
 SET = [f"{name}={value}" for name, value in HYSTERESIS.items()]
 AMPLITUDES = (1e-4, 1e-3)
-FINE = loops.CyclicPath(shape="sine", points=400)
+FINE = loops.CyclicInputPath(waveform="sine", points_per_cycle=400)
 
 
 @pytest.fixture(scope="module")
 def drive(native):
     """Load cycles of a drive with hysteresis."""
     fmu = native / "fmi2" / "HarmonicDriveSpring.fmu"
-    return loops.run_loops(fmu, "phi2", AMPLITUDES, FINE, settings=HYSTERESIS)
+    return loops.run_loops(fmu, "phi2", AMPLITUDES, FINE, start_values=HYSTERESIS)
 
 
 @pytest.mark.parametrize("shape", loops.WAVEFORMS)
 def test_first_loading_then_whole_cycles(shape):
-    points = loops.CyclicPath(centre=1.0, shape=shape, points=8, cycles=2).input_values(3.0)
+    points = loops.CyclicInputPath(
+        centre_value=1.0, waveform=shape, points_per_cycle=8, cycle_count=2
+    ).compute_input_values(3.0)
     near = 1.5 if shape == "triangle" else 3.0 * np.sqrt(0.5)
     cycle = [0.0, near, 3.0, near, 0.0, -near, -3.0, -near]
     np.testing.assert_allclose(points, 1.0 + np.array([*cycle, *cycle, *cycle[:3]]), atol=1e-12)
@@ -37,38 +39,45 @@ def test_first_loading_then_whole_cycles(shape):
 def test_hysteresis_appears(drive, amplitude):
     """Area by Masing's rule from the law, not from the FMU. Errors: trapezoidal rule with 400 points, and the
     sliders."""
-    row = drive.compute_loop_results()[amplitude]
-    law = hysteresis.make_law(load_default("harmonic_drive").with_values(HYSTERESIS, "user", "test").values)
+    row = drive.compute_quantities_of_loops()[amplitude]
+    law = hysteresis.make_hysteresis_law(
+        load_default("harmonic_drive").with_values(HYSTERESIS, "user", "test").values
+    )
     u = np.array([AMPLITUDES[amplitude]])
     assert row["loss"] == pytest.approx(float(law.loop_area(u)[0]), rel=1e-3)
     assert row["loss"] == pytest.approx(row["E_loss"], rel=1e-3)
-    force = law.friction_force(u) + law.elastic_spring.force(u)
+    force = law.friction_force(u) + law.elastic_spring.elastic_force(u)
     assert row["secant_stiffness"] == pytest.approx(float(force[0] / u[0]), rel=1e-9)
     assert row["loss_factor"] == pytest.approx(row["loss"] / (np.pi * force[0] * u[0]), rel=1e-12)
 
 
 def test_force_acts_on_the_joint(drive):
     """The printed force acts on the joint: it has the sign of the motion, opposite to tau2 on the flange."""
-    assert (drive.motion_name, drive.force_name, drive.force_sign, drive.units) == (
+    assert (
+        drive.displacement_name,
+        drive.force_name,
+        drive.force_sign,
+        drive.displacement_and_force_units,
+    ) == (
         "phi2",
         "tau2",
         -1.0,
         ("rad", "N.m"),
     )
     loop = drive.loops[1]
-    np.testing.assert_array_equal(loop.force, -loop.result.columns["tau2"])
-    assert loop.force[100] == loop.force.max() == pytest.approx(loop.force[-1], rel=1e-9)
+    np.testing.assert_array_equal(loop.forces, -loop.path_result.variable_columns["tau2"])
+    assert loop.forces[100] == loop.forces.max() == pytest.approx(loop.forces[-1], rel=1e-9)
 
 
 @pytest.mark.parametrize("version", ["fmi2", "fmi3"])
 def test_without_memory_nothing_is_lost(native, version):
     """A joint without history has no loss in cycles of the force about a compressed working point."""
     fmu = native / version / "GearContact.fmu"
-    found = loops.run_loops(fmu, "f", [100.0, 300.0], loops.CyclicPath(centre=500.0))
-    assert (found.motion_name, found.force_name) == ("s_rel", "f")
-    assert [row["loss"] for row in found.compute_loop_results()] == [0.0, 0.0]
-    assert found.compute_loop_results()[1]["force"] == 300.0
-    assert "E_loss" not in found.compute_loop_results()[0]
+    found = loops.run_loops(fmu, "f", [100.0, 300.0], loops.CyclicInputPath(centre_value=500.0))
+    assert (found.displacement_name, found.force_name) == ("s_rel", "f")
+    assert [row["loss"] for row in found.compute_quantities_of_loops()] == [0.0, 0.0]
+    assert found.compute_quantities_of_loops()[1]["force"] == 300.0
+    assert "E_loss" not in found.compute_quantities_of_loops()[0]
 
 
 @pytest.mark.parametrize(
@@ -164,11 +173,11 @@ SHEAR = ["--input", "s_rel_x", "--loop", "1e-6"]
         ("BoltedJoint", [*SHEAR, "--points", "10"], "points = 10, allowed are multiples of 4 from 8"),
         ("BoltedJoint", [*SHEAR, "--cycles", "0"], "cycles = 0 is outside [1, 1000]"),
         ("BoltedJoint", [*SHEAR, "--output", "K_xx"], "'K_xx' is not an output whose product with s_rel_x"),
-        ("BoltedJoint", [*SHEAR, "--plot", "a.pdf"], "'.pdf' is not a picture"),
+        ("BoltedJoint", [*SHEAR, "--plot", "a.pdf"], "'.pdf' is not that of a picture"),
         (
             "BoltedJoint",
             ["--input", "v_rel_x", "--loop", "1"],
-            "no output makes an energy with v_rel_x [m/s]",
+            "no output multiplied by v_rel_x [m/s] is an energy",
         ),
         ("BoltedJoint", ["--input", "K_xx", "--loop", "1"], "unknown input 'K_xx', allowed are preload"),
         ("BoltedJoint", [*SHEAR, "--set", "mu=-1"], "mu = -1"),

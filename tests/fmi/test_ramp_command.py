@@ -43,4 +43,4 @@ def test_a_ramp_is_drawn(words, capsys, tmp_path):
     assert cli.main([*words, "--plot", str(tmp_path / "a.png"), "--csv", str(tmp_path / "a.csv")]) == 0
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
     assert capsys.readouterr().out.count("wrote ") == 2
-    assert "'.pdf' is not a picture" in refused_line(capsys, *words, "--plot", "a.pdf")
+    assert "'.pdf' is not that of a picture" in refused_line(capsys, *words, "--plot", "a.pdf")

@@ -198,7 +198,7 @@ def test_a_law_evaluates_arrays_of_parameters(name, varied):
     for column in found:
         expected = [one.at_pressure(p)[column][0] for one, p in zip(alone, (1e6, 2e6), strict=True)]
         np.testing.assert_allclose(found[column], expected, rtol=1e-10)
-    assert "not judged for arrays" in found.messages[0]
+    assert "not checked for plausibility with arrays" in found.messages[0]
     assert "2 numbers from" in repr(law)
     with pytest.raises(ValueError, match="inputs of different lengths"):
         law.at_pressure([1e6, 2e6, 3e6])
@@ -236,12 +236,12 @@ def test_a_law_is_judged_as_by_the_command(capsys):
         (lambda: jointfmu.law("nolaw"), "law = 'nolaw', allowed are"),
         (lambda: jointfmu.law("roughness", q=1.0), "unknown name 'q'"),
         (lambda: jointfmu.fit("nothing"), "procedure = 'nothing', allowed are"),
-        (lambda: jointfmu.fit("loop", "a.csv"), "of several joints"),
+        (lambda: jointfmu.fit("loop", "a.csv"), "exists for several joints"),
         (lambda: jointfmu.fit("catalogue", K1=1.0), "missing"),
         (lambda: jointfmu.fit("catalogue", "a.csv"), "takes no file"),
         (
             lambda: jointfmu.fit("loop", "a.csv", joint="bolted_joint", preload="9 kN"),
-            r"preload = '9 kN' is not a number: preload of each bolt in the test \[N\]",
+            r"preload = '9 kN' is not a number: preload of each bolt in the test of a bolted joint",
         ),
         (lambda: jointfmu.fit("catalogue", **ROW, law="hu2023", free="name"), "'name' is not a parameter to"),
         (lambda: jointfmu.fit("preload", "a.csv", direction="up"), "direction = 'up', allowed are normal"),

@@ -13,14 +13,14 @@ from jointfmu.joints import KINDS
 
 
 def test_all_floors_know_the_same_joints() -> None:
-    assert set(KINDS) == set(builders.FMU_PARTS) == set(tools.PARTS)
+    assert set(KINDS) == set(builders.FMU_BUILD_DATA) == set(tools.PARTS)
 
 
 @pytest.mark.parametrize("joint", KINDS)
 def test_every_part_can_be_loaded(joint: str) -> None:
     loaded = [tool for tool in TOOL_NAMES if load_tool_module(KINDS[joint], tool)]
     assert loaded == sorted(tools.PARTS[joint].modules)
-    load = builders.FMU_PARTS[joint].native
+    load = builders.FMU_BUILD_DATA[joint].load_native_definition
     assert load is not None
     assert load().shared_file_stems
 
@@ -41,20 +41,24 @@ def package(tmp_path: Path) -> Iterator[str]:
 
 def test_a_part_is_a_module(package: str) -> None:
     parts = JointToolModules(package, ("export",))
-    assert parts.load_module("export") is sys.modules[f"{package}.export"]
-    assert parts.load_module("fit") is None
+    assert parts.load_joint_module("export") is sys.modules[f"{package}.export"]
+    assert parts.load_joint_module("fit") is None
 
 
 def test_a_module_may_serve_several_tools(package: str) -> None:
     parts = JointToolModules(package, ("export",), pressure="helper", checks="helper")
-    assert parts.load_module("pressure") is parts.load_module("checks") is sys.modules[f"{package}.helper"]
+    assert (
+        parts.load_joint_module("pressure")
+        is parts.load_joint_module("checks")
+        is sys.modules[f"{package}.helper"]
+    )
 
 
 @pytest.mark.parametrize(
     ("modules", "what"),
     [
-        ({"pressure": "load"}, "joint_of_a_test.load is not there"),
-        ({"pressures": "helper"}, "joint_of_a_test.pressures is of no tool"),
+        ({"pressure": "load"}, "joint_of_a_test.load has no module"),
+        ({"pressures": "helper"}, "joint_of_a_test.pressures is a part that no tool uses"),
     ],
 )
 def test_a_wrong_module_fails_at_import(package: str, modules: dict[str, str], what: str) -> None:
@@ -65,9 +69,9 @@ def test_a_wrong_module_fails_at_import(package: str, modules: dict[str, str], w
 @pytest.mark.parametrize(
     ("names", "what"),
     [
-        (("export", "fitt"), "joint_of_a_test.fitt is not there"),
-        (("export", "fit"), "joint_of_a_test.fit is not there"),
-        (("export", "helper"), "joint_of_a_test.helper is of no tool"),
+        (("export", "fitt"), "joint_of_a_test.fitt has no module"),
+        (("export", "fit"), "joint_of_a_test.fit has no module"),
+        (("export", "helper"), "joint_of_a_test.helper is a part that no tool uses"),
         ((), "joint_of_a_test.export is a part that its __init__.py must name"),
     ],
 )

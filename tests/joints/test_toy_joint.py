@@ -15,10 +15,10 @@ from conftest import here_alone
 from fmpy.validation import validate_fmu
 from jointfmu_fmu_src import joints as builders
 from jointfmu_fmu_src.building import FLAVOUR_BUILDERS, build_fmus
-from jointfmu_fmu_src.folders import find_fmu_parts
+from jointfmu_fmu_src.folders import find_fmu_build_data
 from jointfmu_tools import cli
 from jointfmu_tools.exchange.modelica import library
-from jointfmu_tools.studies.checks import check_ramp, compare_flavour, run_default_ramp
+from jointfmu_tools.studies.checks import check_ramp, compare_build_variant, run_default_ramp
 
 from jointfmu import joints
 from jointfmu.parameters import format_parameter_file, load_default
@@ -31,9 +31,9 @@ C = 1e4
 @pytest.fixture(scope="module", autouse=True)
 def toy():
     joints.register_joint(toy_joint.KIND)
-    builders.FMU_PARTS["toy"], tools.PARTS["toy"] = toy_fmu.FMU_PARTS, toy_tools.TOOL_MODULES
+    builders.FMU_BUILD_DATA["toy"], tools.PARTS["toy"] = toy_fmu.FMU_BUILD_DATA, toy_tools.TOOL_MODULES
     yield
-    del builders.FMU_PARTS["toy"], tools.PARTS["toy"]
+    del builders.FMU_BUILD_DATA["toy"], tools.PARTS["toy"]
     del joints.KINDS["toy"], joints.MODELS["ToySpring"]
 
 
@@ -46,10 +46,10 @@ def built(toy, tmp_path_factory):
 
 
 def test_a_joint_without_fmu_parts_cannot_be_built():
-    own = builders.FMU_PARTS.pop("toy")
+    own = builders.FMU_BUILD_DATA.pop("toy")
     with pytest.raises(ValueError, match=r"joint 'toy' has no FMU parts; .*: harmonic_drive"):
-        find_fmu_parts(joints.MODELS["ToySpring"])
-    builders.FMU_PARTS["toy"] = own
+        find_fmu_build_data(joints.MODELS["ToySpring"])
+    builders.FMU_BUILD_DATA["toy"] = own
 
 
 def test_it_is_short():
@@ -69,11 +69,13 @@ def test_every_flavour_is_valid_and_gives_hookes_law(built, flavour):
     path = built / flavour / "ToySpring.fmu"
     assert validate_fmu(str(path)) == []
     ramp = run_default_ramp("ToySpring", built / flavour)
-    assert ramp.columns["f"] == pytest.approx(-C * ramp.columns["s_rel"], rel=1e-15, abs=0.0)
-    assert ramp.columns["K"] == pytest.approx(np.full(101, C), rel=1e-15)
-    assert ramp.messages == ()
+    assert ramp.variable_columns["f"] == pytest.approx(
+        -C * ramp.variable_columns["s_rel"], rel=1e-15, abs=0.0
+    )
+    assert ramp.variable_columns["K"] == pytest.approx(np.full(101, C), rel=1e-15)
+    assert ramp.log_messages == ()
     assert all(one.is_passed for one in check_ramp("ToySpring", built / flavour, ramp))
-    assert compare_flavour("ToySpring", built / "python", ramp).is_passed
+    assert compare_build_variant("ToySpring", built / "python", ramp).is_passed
 
 
 def test_a_stiffness_that_is_none_is_refused_by_the_fmu(built):

@@ -14,7 +14,7 @@ from jointfmu.contact.interface import evaluate_at_largest_spot, solve_largest_s
 from jointfmu.joints.harmonic_drive.spring import torque_curve
 from jointfmu.mechanics.curve import (
     CLOSING_END_OVER_PLASTIC_SPOT_AREA,
-    MAX_ERROR,
+    MAX_INTERPOLATION_ERROR,
     Curve,
     assemble_curve,
     closing_pressure,
@@ -196,7 +196,7 @@ def test_load_is_the_slope_of_the_energy(curves, name):
 def test_energy_of_the_closing():
     """V = p L z^4 (a/4 + b z/5 + c z^2/6) from first contact on, accurate down to the smallest z."""
     curve = tabulate_approach(ZHAO)
-    p, length = curve.closing_end_load, -curve.displacement[0]
+    p, length = curve.closing_end_pressure, -curve.displacement[0]
     i = int(np.searchsorted(curve.displacement, 0.0))
     c = 0.5 * curve.stiffness_slope_end[i - 1] * length**2 / p - 6.0
     z = np.array([1e-3, 1e-2, 0.1, 0.5, 1.0])
@@ -284,7 +284,7 @@ def test_measured_error_covers_the_true_error(name, segments):
 
 @each_set
 def test_approach_is_the_integral_of_dp_over_k(law):
-    """Pressure and stiffness at an approach, integrated by adaptive quadrature, to MAX_ERROR."""
+    """Pressure and stiffness at an approach, by adaptive quadrature, to MAX_INTERPOLATION_ERROR."""
     curve = tabulate_approach(law)
     spots = law.spot_distribution()
     start = float(curve.load[np.searchsorted(curve.displacement, 0.0)])
@@ -302,8 +302,8 @@ def test_approach_is_the_integral_of_dp_over_k(law):
         ends = [np.log(low), *inner, np.log(high)]
         delta += sum(quad(per_decade, a, b, epsabs=0.0, epsrel=1e-10)[0] for a, b in pairwise(ends))
         load, stiffness = curve.derivatives(delta, 1)
-        assert load == pytest.approx(high, rel=MAX_ERROR)
-        assert stiffness == pytest.approx(float(stiffness_curve(law, high)[0]), rel=MAX_ERROR)
+        assert load == pytest.approx(high, rel=MAX_INTERPOLATION_ERROR)
+        assert stiffness == pytest.approx(float(stiffness_curve(law, high)[0]), rel=MAX_INTERPOLATION_ERROR)
 
 
 @each_set
@@ -313,7 +313,7 @@ def test_stiffness_is_the_laws(law):
     x = curve.displacement[curve.displacement >= 0.0]
     t = np.linspace(0.0, 1.0, 11)[:-1, None]
     p, k = curve.derivatives((x[:-1] + t * np.diff(x)).ravel(), 1)
-    np.testing.assert_allclose(k, stiffness_curve(law, p)[0], rtol=MAX_ERROR)
+    np.testing.assert_allclose(k, stiffness_curve(law, p)[0], rtol=MAX_INTERPOLATION_ERROR)
     assert curve.end_point[1] == pytest.approx(law.hardness, rel=1e-12)  # residual of the pressure inversion
 
 
@@ -329,7 +329,7 @@ def test_any_law_gives_a_monotone_table_or_is_refused(kind, data):
             tabulate_approach(law)
         return
     curve = tabulate_approach(law)
-    assert curve.interpolation_error <= MAX_ERROR
+    assert curve.interpolation_error <= MAX_INTERPOLATION_ERROR
     x = curve.displacement
     load, stiffness = curve.derivatives((x[:-1] + np.linspace(0, 1, 9)[:-1, None] * np.diff(x)).T.ravel(), 1)
     assert np.all(np.diff(load) > 0.0)
@@ -399,9 +399,9 @@ def test_closing(p, k, growth):
     ids=["zhao-D-1.2", "zhao-D-1.23", "zhao-coarse", "yu"],
 )
 def test_only_plastic_spots_are_refused(law):
-    with pytest.raises(ValueError, match="only plastic spots") as error:
+    with pytest.raises(ValueError, match="all contact spots are plastic") as error:
         tabulate_approach(law)
     text = str(error.value)
     assert "\n" not in text
-    said = float(text.split("below ")[1].split(" Pa")[0])
+    said = float(text.split("start at ")[1].split(" Pa")[0])
     assert said > law.hardness  # what the message says

@@ -10,7 +10,7 @@ from oracles.elastic_ring.nodes import Footprint
 
 from jointfmu.joints.bolted_joint.law import preload_pressure, row_forces
 from jointfmu.mechanics.footprint.bolts import BoltedFrame, bolt_pressures, frame_cells, pressure_distribution
-from jointfmu.mechanics.footprint.distribution import PRESSURE_DECIMALS
+from jointfmu.mechanics.footprint.distribution import PRESSURE_COMPARISON_DECIMALS
 from jointfmu.parameters import load_default
 from jointfmu.quantity import flatten_parameters
 
@@ -68,7 +68,7 @@ def test_cells_fill_the_frame():
 
 
 def test_bolts_sit_on_the_frame():
-    bolts = JOINT.pattern.bolts_from_middle
+    bolts = JOINT.pattern.bolt_positions_from_middle
     assert len(bolts) == JOINT.n_bolts
     np.testing.assert_allclose(bolts.sum(axis=0), 0.0, atol=EPS)
     np.testing.assert_array_equal(bolts[:3, 1], 0.5 * JOINT.row_distance)
@@ -108,7 +108,9 @@ def test_pressure_decays_with_the_distance(pattern, r, further):
 def test_pressure_of_one_bolt_falls_outwards():
     areas, points = frame_cells(JOINT.pattern)
     for bolt, unit in zip(
-        JOINT.pattern.bolts_from_middle, bolt_pressures(JOINT.pattern, areas, points, points), strict=True
+        JOINT.pattern.bolt_positions_from_middle,
+        bolt_pressures(JOINT.pattern, areas, points, points),
+        strict=True,
     ):
         outwards = np.argsort(np.hypot(*(points - bolt).T))
         assert np.all(np.diff(unit[outwards]) <= 0.0)
@@ -139,10 +141,12 @@ def test_published_pressures():
     shape = pressure_distribution(JOINT.pattern)
     p = preload_pressure(JOINT, shape, 9e3, 0.0)
     assert np.max(p) == pytest.approx(7.98e6, rel=FIT)
-    rim = np.min(np.hypot(*(shape.position[np.argmax(p)] - JOINT.pattern.bolts_from_middle).T))
+    rim = np.min(np.hypot(*(shape.position[np.argmax(p)] - JOINT.pattern.bolt_positions_from_middle).T))
     assert rim < 0.5 * JOINT.pattern.hole_diameter + JOINT.pattern.flange_width / 7  # within one cell
     areas, points = frame_cells(JOINT.pattern)
-    between = 0.5 * (JOINT.pattern.bolts_from_middle[0] + JOINT.pattern.bolts_from_middle[3])
+    between = 0.5 * (
+        JOINT.pattern.bolt_positions_from_middle[0] + JOINT.pattern.bolt_positions_from_middle[3]
+    )
     unit = bolt_pressures(JOINT.pattern, areas, points, between[None, :]).sum()
     assert 9e3 * unit * areas.sum() / JOINT.A_0 == pytest.approx(0.62e6, rel=FIT)
 
@@ -258,8 +262,8 @@ def test_merged_nodes_keep_the_sums(moment):
     ):
         # equal is rounded to ALIKE decimals where nodes are compared
         assert np.sum(merged.area_share * found) == pytest.approx(
-            shape.area_share @ expected, rel=10.0**-PRESSURE_DECIMALS
+            shape.area_share @ expected, rel=10.0**-PRESSURE_COMPARISON_DECIMALS
         )
     assert np.max(merged.preload_pressure_ratio) == pytest.approx(
-        np.max(shape.preload_pressure_ratio), rel=10.0**-PRESSURE_DECIMALS
+        np.max(shape.preload_pressure_ratio), rel=10.0**-PRESSURE_COMPARISON_DECIMALS
     )

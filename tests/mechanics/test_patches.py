@@ -9,11 +9,11 @@ from oracles import contact_patches
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.mechanics.footprint.bolts import pressure_distribution
 from jointfmu.mechanics.footprint.distribution import FrictionPatches, PressureDistribution
-from jointfmu.mechanics.footprint.elimination import solve_linear
+from jointfmu.mechanics.footprint.elimination import solve_linear_system
 from jointfmu.mechanics.footprint.patch_reduction import reduce_patches
 from jointfmu.mechanics.footprint.plate import BoltedPlate
 from jointfmu.mechanics.footprint.point_reduction import reduce_points
-from jointfmu.mechanics.sliders import FOUNDATION_SLIDERS, torsion_directions
+from jointfmu.mechanics.sliders import FOUNDATION_SLIDER_COUNT, torsion_directions
 from jointfmu.parameters import load_default
 
 CONTACTS = ("frame", "plate", "row")
@@ -62,7 +62,10 @@ def balance(shape: PressureDistribution) -> np.ndarray:
         shape.preload_pressure_ratio,
         shape.moment_pressure_ratio,
     )
-    one, own = np.ones_like(x), 0.5 * shape.radius**2 if isinstance(shape, FrictionPatches) else 0.0
+    one, own = (
+        np.ones_like(x),
+        0.5 * shape.slider_circle_radius**2 if isinstance(shape, FrictionPatches) else 0.0,
+    )
     rows = np.stack(
         [one, x, y, x * x + own, x * y, y * y + own, equal, equal * x, equal * y, tilt, tilt * x, tilt * y]
     )
@@ -110,7 +113,7 @@ def test_few_nodes_stay_as_they_are():
     assert reduce_points(shape, shape.area_share.size) is shape
     few = reduce_patches(shape, shape.area_share.size)
     assert few.position is shape.position
-    assert not np.any(few.radius)
+    assert not np.any(few.slider_circle_radius)
 
 
 def test_equations_are_solved_as_lapack_does():
@@ -119,7 +122,7 @@ def test_equations_are_solved_as_lapack_does():
     matrix, right = slopes.T @ slopes, np.ones(110)
     there = np.linalg.solve(matrix, right)
     np.testing.assert_allclose(
-        solve_linear(matrix, right), there, rtol=0.0, atol=1e-11 * np.max(np.abs(there))
+        solve_linear_system(matrix, right), there, rtol=0.0, atol=1e-11 * np.max(np.abs(there))
     )
 
 
@@ -134,7 +137,7 @@ def test_too_few_points_are_refused():
 @pytest.fixture(scope="module")
 def spring() -> BoltedJointSpring:
     """Spring of the default joint; the reduction of points did not use its curve."""
-    return BoltedJointSpring.for_joint(load_default("bolted_joint").values)
+    return BoltedJointSpring.from_joint(load_default("bolted_joint").values)
 
 
 @pytest.mark.parametrize(
@@ -168,12 +171,12 @@ def test_a_turn_about_any_pole_slips_as_all_nodes_do(spring, name):
     mean = contact_patches.mean_pressure(spring)
     largest = np.max(contact_patches.preloaded_approaches(spring.curve, shape, (mean, 0.0)))
     largest -= spring.curve.displacement[0]
-    circle = torsion_directions(FOUNDATION_SLIDERS)[::-1].T
+    circle = torsion_directions(FOUNDATION_SLIDER_COUNT)[::-1].T
 
     def friction(points, load, turn, pole):
         start = contact_patches.preloaded_approaches(spring.curve, points, load)
         p = spring.curve.derivatives(start - largest * (points.position @ turn), 0)[0]
-        places = points.position[:, None] + points.radius[:, None, None] * circle
+        places = points.position[:, None] + points.slider_circle_radius[:, None, None] * circle
         arm = np.mean(np.hypot(*np.moveaxis(places - pole, -1, 0)), axis=1)
         return points.area_share @ (p * arm), points.area_share @ p
 
@@ -182,7 +185,7 @@ def test_a_turn_about_any_pole_slips_as_all_nodes_do(spring, name):
         load = mean, moment * rng.uniform(-1.0, 1.0)
         turn, pole = 0.2 / reach * rng.uniform(-1.0, 1.0, 2), 1.5 * reach * rng.uniform(-1.0, 1.0, 2)
         (there, force), (few, _) = (
-            friction(points, load, turn, pole) for points in (shape.as_patches(), patches)
+            friction(points, load, turn, pole) for points in (shape.make_friction_patches(), patches)
         )
         off.append(abs(few - there) / (force * np.hypot(gyration, np.hypot(*pole))))
     assert np.quantile(off, 0.95) < 0.017
@@ -202,7 +205,7 @@ def test_gross_slip_about_poles_inside_has_the_force_of_all_nodes(name, most):
     assert found[0] < most
     assert found[1] < 0.02
     assert (
-        contact_patches.pole_deviations(contact(name), PressureDistribution.as_patches(patches))[0]
+        contact_patches.pole_deviations(contact(name), PressureDistribution.make_friction_patches(patches))[0]
         > 2.0 * most
     )
 

@@ -62,7 +62,7 @@ def drive() -> HarmonicDriveSpring:
 
 @pytest.fixture(scope="module")
 def bolted() -> BoltedJointSpring:
-    return BoltedJointSpring.for_joint(load_default("bolted_joint").values)
+    return BoltedJointSpring.from_joint(load_default("bolted_joint").values)
 
 
 @pytest.fixture(scope="module")
@@ -189,7 +189,7 @@ def test_wrappers_connect_every_input_once(files: dict[str, str]):
 def test_a_thinned_curve_keeps_load_and_stiffness(kind: str, request: pytest.FixtureRequest):
     curve = request.getfixturevalue(kind).curve
     table = records.decimate_curve(curve)
-    assert table.rows.shape[0] < curve.displacement.size / 3
+    assert table.table_rows.shape[0] < curve.displacement.size / 3
     x = np.linspace(curve.displacement[0], 1.1 * curve.end_point[0], 20001)[1:]
     for exact, rough in zip(
         curve.derivatives(x), records.make_curve_of_table(table).derivatives(x), strict=True
@@ -198,7 +198,7 @@ def test_a_thinned_curve_keeps_load_and_stiffness(kind: str, request: pytest.Fix
 
 
 def test_one_total_stands_for_all_nodes_of_the_bolted_joint(bolted: BoltedJointSpring):
-    joint = bolted_modelica.combine_nodes(bolted, 15e3, 4500.0)
+    joint = bolted_modelica.combine_nodes_to_spring(bolted, 15e3, 4500.0)
     total = records.make_curve_of_table(joint.force_table)
     preload = 15e3 * bolted.joint.n_bolts
     rest = bolted.evaluate(15e3, 4500.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
@@ -207,14 +207,14 @@ def test_one_total_stands_for_all_nodes_of_the_bolted_joint(bolted: BoltedJointS
         load, stiffness = (float(x) for x in total.derivatives(-s_z))
         assert load == pytest.approx(exact["f_z"], abs=EXACT * max(preload, abs(exact["f_z"])))
         assert stiffness == pytest.approx(exact["K_zz"], abs=EXACT * max(rest["K_zz"], exact["K_zz"]))
-        eta = np.interp(-s_z, *joint.damping_table.T)
-        assert eta == pytest.approx(exact["eta_n"], rel=2.0 * bolted_modelica.DAMPING_TOLERANCE)
+        eta = np.interp(-s_z, *joint.dissipation_factor_table.T)
+        assert eta == pytest.approx(exact["eta_n"], rel=2.0 * bolted_modelica.DISSIPATION_FACTOR_TOLERANCE)
 
 
 @pytest.mark.parametrize("preload", [0.0, -1.0, math.nan, 1e9])
 def test_a_preload_outside_the_law_is_refused(bolted: BoltedJointSpring, preload: float):
     with pytest.raises(ValueError, match=r"preload = .* N per bolt"):
-        bolted_modelica.combine_nodes(bolted, preload, 0.0)
+        bolted_modelica.combine_nodes_to_spring(bolted, preload, 0.0)
 
 
 # ---- the command ----
@@ -399,7 +399,7 @@ def test_bolted_component_gives_the_forces_of_the_package(rumoca: Any, bolted: B
     """Forces without history agree far below the friction limit, which the FMU has for each of its nodes."""
     s, v = (0.0, -2e-9, -4e-6), (2e-6, -1e-6, 6e-3)
     flags = {"memory": False, "damping": True, "plastic_damping": True}
-    plastic = BoltedJointSpring.for_interface_nodes(replace_values(bolted.joint, flags))
+    plastic = BoltedJointSpring.from_interface_nodes(replace_values(bolted.joint, flags))
     record = make_identifier(f"{load_default('bolted_joint').name} 15 kN 4500 Nm")
     body = (
         f"JointStiffness.Components.BoltedJoint joint(data=JointStiffness.Data.{record}(), "
@@ -418,7 +418,7 @@ def test_bolted_component_gives_the_forces_of_the_package(rumoca: Any, bolted: B
         for i, axis in enumerate("xyz"):
             error = abs(found[f"joint.f[{i + 1}]"][k] - exact[f"f_{axis}"])
             allowed = EXACT * scale + (
-                2.0 * bolted_modelica.DAMPING_TOLERANCE * damping if axis == "z" else 0.0
+                2.0 * bolted_modelica.DISSIPATION_FACTOR_TOLERANCE * damping if axis == "z" else 0.0
             )
             assert error <= allowed, (axis, t, found[f"joint.f[{i + 1}]"][k], exact[f"f_{axis}"])
 
@@ -444,7 +444,7 @@ def test_bolts_of_the_component_lift_off_as_those_of_the_package(
     body += "\n  Move mx; Move my; Move mz(at=1e-6, rate=-4e-6);"
     wires = "\n  ".join(f"connect(joint.flange_{a}, m{a}.flange);" for a in "xyz")
     found = simulate(rumoca, top(body, wires, move("Translational", "s")), 1.0, 2e-2, written=tmp_path)
-    spring = BoltedJointSpring.for_interface_nodes(replace(file.values, memory=False))
+    spring = BoltedJointSpring.from_interface_nodes(replace(file.values, memory=False))
     still = (0.0,) * 3
     exact = [
         spring.evaluate(15e3, 4500.0, (0.0, 0.0, z), still, temperature=temperature)["f_z"]
@@ -465,7 +465,7 @@ def test_elastic_shear_of_the_bolted_component_is_that_of_the_package(rumoca: An
     body += "".join(f"\n  Move m{a}(at=0.0, rate={v!r});" for a, v in zip("xyz", rates, strict=True))
     wires = "\n  ".join(f"connect(joint.flange_{a}, m{a}.flange);" for a in "xyz")
     found = simulate(rumoca, top(body, wires, move("Translational", "s")), 1.0, 1e-2)
-    total = bolted_modelica.combine_nodes(bolted, 9e3, 0.0)
+    total = bolted_modelica.combine_nodes_to_spring(bolted, 9e3, 0.0)
     limit = bolted.joint.mu * total.preload_contact_force
     u = (found["joint.s_rel[1]"], found["joint.s_rel[2]"])
     assert np.max(np.hypot(*u) * found["joint.K_t"]) > 2.0 * limit
@@ -539,7 +539,7 @@ def test_joints_with_the_law_roughness_give_the_forces_of_the_package(rumoca: An
     body += "".join(f"\n  Move m{a}(at={x!r}, rate={v!r});" for a, x, v in zip("xyz", at, rate, strict=True))
     wires = "\n  ".join(f"connect(joint.flange_{a}, m{a}.flange);" for a in "xyz")
     found = simulate(rumoca, top(body, wires, move("Translational", "s")), 2e-3, 1e-4, tmp_path)
-    spring = BoltedJointSpring.for_joint(replace_values(bolted.values, {"memory": False}))
+    spring = BoltedJointSpring.from_joint(replace_values(bolted.values, {"memory": False}))
     for k, t in enumerate(found.time):
         exact = spring.evaluate(9e3, 0.0, tuple(x + v * t for x, v in zip(at, rate, strict=True)), rate)
         for i, axis in enumerate("xyz"):

@@ -9,7 +9,7 @@ import pytest
 from clients import needs
 from joint_cases import NAMES, random_inputs
 from jointfmu_tools.run import engine
-from jointfmu_tools.run.engine import CompiledJoint, PythonJoint, VariableJoint, open_joint
+from jointfmu_tools.run.engine import CompiledJoint, ParametricJoint, PythonJoint, open_joint
 from surroundings import environment, missing_package, temporary_folder
 
 import jointfmu
@@ -23,12 +23,12 @@ SAME = 1e-9
 
 def a_path(python, seed, count=25):
     """Random inputs that the joint accepts: within its load ramp and the motions of its load cycle."""
-    model, random = python.model, np.random.default_rng(seed)
+    model, random = python.fmu_model, np.random.default_rng(seed)
     ramp, start = model.ramp, {v.name: 0.0 for v in model.inputs}
     inputs = start | {ramp.input_name: ramp.end_value * random.uniform(0.1, 0.9)}
     if model.load_cycle:
         inputs |= {n: float(v) for n, v in model.load_cycle.variable_values.items() if n in inputs}
-        name, amplitude = model.load_cycle.input_name, model.load_cycle.amplitude
+        name, amplitude = model.load_cycle.input_name, model.load_cycle.input_amplitude
         inputs[name] = amplitude * random.uniform(-1.0, 1.0, count)
     else:
         inputs[ramp.input_name] = ramp.end_value * random.uniform(0.0, 1.0, count)
@@ -37,8 +37,11 @@ def a_path(python, seed, count=25):
 
 def largest_difference(one, other):
     """Largest difference of two results over the largest value of each output."""
-    sizes = {name: float(np.max(np.abs(column))) or 1.0 for name, column in other.columns.items()}
-    return max(float(np.max(np.abs(one.columns[n] - other.columns[n]))) / size for n, size in sizes.items())
+    sizes = {name: float(np.max(np.abs(column))) or 1.0 for name, column in other.variable_columns.items()}
+    return max(
+        float(np.max(np.abs(one.variable_columns[n] - other.variable_columns[n]))) / size
+        for n, size in sizes.items()
+    )
 
 
 @pytest.mark.parametrize(("kind", "law", "fmu"), LAWS)
@@ -50,7 +53,8 @@ def test_the_compiled_joint_gives_the_numbers_of_the_python_law(kind, law, fmu):
         path = a_path(python, seed)
         assert (
             largest_difference(
-                compiled.follow(path, each_from_rest=each), python.follow(path, each_from_rest=each)
+                compiled.evaluate_path(path, restart_at_each_point=each),
+                python.evaluate_path(path, restart_at_each_point=each),
             )
             <= SAME
         )
@@ -59,8 +63,8 @@ def test_the_compiled_joint_gives_the_numbers_of_the_python_law(kind, law, fmu):
     for joint in (compiled, python):
         joint.set_parameters({number: 1.01 * values[number]})
     path = a_path(python, 2)
-    found = compiled.follow(path)
-    assert largest_difference(found, python.follow(path)) <= SAME
+    found = compiled.evaluate_path(path)
+    assert largest_difference(found, python.evaluate_path(path)) <= SAME
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -79,7 +83,7 @@ def test_any_motion_has_the_numbers_of_the_python_law(name):
     for n in rows[0]:
         rows.append(rows[-1] | {n: corners[0][n]})
     path = {n: np.array([row[n] for row in rows]) for n in rows[0]}
-    found, expected = (joint(model, file).follow(path) for joint in (CompiledJoint, PythonJoint))
+    found, expected = (joint(model, file).evaluate_path(path) for joint in (CompiledJoint, PythonJoint))
     assert largest_difference(found, expected) <= SAME
 
 
@@ -97,10 +101,10 @@ def test_both_refuse_the_same_value_with_one_line():
     for joint in (CompiledJoint(model, file), PythonJoint(model, file)):
         joint.set_parameters({"mu": -1.0})
         with pytest.raises(ValueError, match=r"mu = -1 is outside") as refused:
-            joint.follow({"preload": 9e3})
+            joint.evaluate_path({"preload": 9e3})
         assert "\n" not in str(refused.value)
         joint.set_parameters({"mu": 0.2})
-        assert joint.follow({"preload": 9e3}).columns["K_zz"][0] > 0.0
+        assert joint.evaluate_path({"preload": 9e3}).variable_columns["K_zz"][0] > 0.0
 
 
 def test_a_warning_is_given_by_each_path_that_exceeds_the_law():
@@ -126,20 +130,20 @@ def test_a_plot_leaves_the_library_of_the_joint_as_it_is(elastic_joint):
 
 def test_trial_parameters_give_the_joint_that_has_them():
     file = load_default("bolted_joint")
-    trial = VariableJoint(KINDS["bolted_joint"].models[0])
+    trial = ParametricJoint(KINDS["bolted_joint"].models[0])
     path = {"preload": 9e3, "s_rel_x": [0.0, 5e-6, 0.0]}
     not_exposed = {"pattern.decay_length": 1.1 * file.values_by_name["pattern.decay_length"]}
     for values in ({"mu": 0.1}, {"mu": 0.3, "H": 2e9}, not_exposed, {"mu": 0.1}):
         parameters = file.with_values(values, "user", "test").values
         expected = jointfmu.load("BoltedJoint").with_values(values).follow(**path)
-        found = trial.with_parameters(parameters).follow(path).columns
+        found = trial.open_with_parameters(parameters).evaluate_path(path).variable_columns
         np.testing.assert_array_equal(found["f_x"], expected["f_x"], str(values))
 
 
 def test_without_a_compiler_the_python_law_answers_and_says_so(tmp_path, enter, capsys):
     file = load_default("gear_contact")
     model = KINDS["gear_contact"].models[0]
-    wanted = CompiledJoint(model, file).follow({"f": [0.0, 500.0]})
+    wanted = CompiledJoint(model, file).evaluate_path({"f": [0.0, 500.0]})
 
     enter(environment(JOINTFMU_CACHE=str(tmp_path)))
     enter(missing_package("ziglang"))
@@ -147,7 +151,7 @@ def test_without_a_compiler_the_python_law_answers_and_says_so(tmp_path, enter, 
     for _ in range(2):
         joint = open_joint(model, file)
         assert isinstance(joint, PythonJoint)
-    assert largest_difference(joint.follow({"f": [0.0, 500.0]}), wanted) <= SAME
+    assert largest_difference(joint.evaluate_path({"f": [0.0, 500.0]}), wanted) <= SAME
     (line,) = capsys.readouterr().err.splitlines()
     assert "ziglang" in line
     assert "pip install 'jointfmu[build]'" in line
@@ -180,4 +184,4 @@ def test_without_history_the_compiled_joint_gives_the_numbers_of_the_python_law(
     compiled, python = CompiledJoint(model, file), PythonJoint(model, file)
     moments = {"s_rel_y": 1e-6, "theta_x": 1e-5, "theta_y": 2e-5, "theta_z": 1e-5}  # not only round-off
     path = a_path(python, 3) | moments
-    assert largest_difference(compiled.follow(path), python.follow(path)) <= SAME
+    assert largest_difference(compiled.evaluate_path(path), python.evaluate_path(path)) <= SAME

@@ -24,7 +24,7 @@ CALLER = """
 #include "foundation.c"
 __attribute__((visibility("default"))) int read_properties(int n, const double (*nodes)[5], const double *law,
                                                            int moves, const double *approach, double *heights,
-                                                           double (*found)[FOUNDATION_SLIDERS][3])
+                                                           double (*found)[FOUNDATION_SLIDER_COUNT][3])
 {
     static Curve curve;
     static Foundation f;
@@ -46,7 +46,7 @@ __attribute__((visibility("default"))) int read_properties(int n, const double (
         const double at = isnan(approach[m]) ? f.height[m % N_HEIGHTS] : approach[m];
         const PatchState state = patch_state(&f, at, near);
         near = state.full_ranges;
-        for (int k = 0; k < FOUNDATION_SLIDERS; k++) {
+        for (int k = 0; k < FOUNDATION_SLIDER_COUNT; k++) {
             const SliderProperties pair = slider_properties(&f, k / 2, &state);
             const double all[] = {pair.K, pair.limit[k % 2], pair.slope};
             memcpy(found[m][k], all, sizeof all);
@@ -80,7 +80,7 @@ def library(tmp_path_factory: pytest.TempPathFactory) -> CDLL:
     ]
     platform = fmpy.platform_tuple
     made = compiler.compile_libraries("foundation", files, units, [platform])
-    path = tmp_path_factory.mktemp("foundation") / compiler.library_file_name("foundation", platform)
+    path = tmp_path_factory.mktemp("foundation") / compiler.make_library_file_name("foundation", platform)
     path.write_bytes(made[platform])
     return CDLL(str(path))
 

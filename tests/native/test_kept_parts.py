@@ -13,13 +13,13 @@ from joint_cases import CASES, STATE, law, random_inputs
 from jointfmu_fmu_src.building import build_fmus
 from jointfmu_fmu_src.native.code.generate import generate_sources
 from jointfmu_fmu_src.native.compiled import compiled_models
-from jointfmu_fmu_src.native.compiled.binary import fill_library
+from jointfmu_fmu_src.native.compiled.binary import fill_library_placeholders
 from jointfmu_fmu_src.native.compiled.compile_ahead import list_code_structures
 from jointfmu_fmu_src.native.data import (
-    PLACEHOLDER_NAME,
-    make_data_block,
-    make_fmu_data,
-    make_placeholder,
+    PLACEHOLDER_FMU_NAME,
+    make_data_struct,
+    make_fmu_data_struct,
+    make_placeholder_data_struct,
     split_parameters,
 )
 from natives import close
@@ -41,7 +41,7 @@ def of(name: str, changes: dict[str, Any] | None = None) -> tuple[Model, Paramet
 
 
 def part_name(model: Model, file: ParameterFile) -> str:
-    return compiled_models.compiled_model_name(model, split_parameters(model, file))
+    return compiled_models.make_compiled_model_file_name(model, split_parameters(model, file))
 
 
 # What a part is kept by
@@ -77,14 +77,14 @@ def a_part() -> compiled_models.CompiledModel:
 
 
 def test_a_part_is_read_as_it_was_written() -> None:
-    content = compiled_models.pack_model(a_part())
-    assert compiled_models.unpack_model(content) == a_part()
-    assert compiled_models.pack_model(compiled_models.unpack_model(content)) == content
+    content = compiled_models.pack_compiled_model(a_part())
+    assert compiled_models.unpack_compiled_model(content) == a_part()
+    assert compiled_models.pack_compiled_model(compiled_models.unpack_compiled_model(content)) == content
     for broken in (b"", content[:-40], content[:100], b"x" + content):
         with pytest.raises(
             (OSError, ValueError, EOFError, compiled_models.lzma.LZMAError, compiled_models.tarfile.TarError)
         ):
-            compiled_models.unpack_model(broken)
+            compiled_models.unpack_compiled_model(broken)
 
 
 def test_it_is_compiled_once_and_again_where_the_file_is_broken(tmp_path: Path, enter: Enter) -> None:
@@ -112,8 +112,8 @@ def test_a_cache_that_cannot_be_written_is_no_error(tmp_path: Path, enter: Enter
 
 def test_many_may_keep_the_same_part_at_once(tmp_path: Path) -> None:
     """Old parts are deleted, and no process reads a half-written file."""
-    place, content = tmp_path / "new.tar.xz", compiled_models.pack_model(a_part())
-    count = compiled_models.MAX_CACHED_FILES
+    place, content = tmp_path / "new.tar.xz", compiled_models.pack_compiled_model(a_part())
+    count = compiled_models.MAX_FILES_PER_CACHE_FOLDER
     for i in range(count + 3):
         old = tmp_path / f"{i}.tar.xz"
         old.write_bytes(b"")
@@ -121,7 +121,7 @@ def test_many_may_keep_the_same_part_at_once(tmp_path: Path) -> None:
 
     def keep_and_read(_: int) -> compiled_models.CompiledModel:
         compiled_models._write_cache_file(place, content)
-        return compiled_models.unpack_model(place.read_bytes())
+        return compiled_models.unpack_compiled_model(place.read_bytes())
 
     with ThreadPoolExecutor(8) as pool:
         assert set(map(str, pool.map(keep_and_read, range(64)))) == {str(a_part())}
@@ -134,14 +134,14 @@ def test_many_may_keep_the_same_part_at_once(tmp_path: Path) -> None:
 
 def test_a_library_of_other_data_is_refused() -> None:
     before, after = (
-        make_data_block(PLACEHOLDER_NAME, "", [0.0] * 3),
-        make_data_block("Mine", "{1}", [1.0] * 3),
+        make_data_struct(PLACEHOLDER_FMU_NAME, "", [0.0] * 3),
+        make_data_struct("Mine", "{1}", [1.0] * 3),
     )
-    library = b"head" + before.content + b"tail"
-    assert fill_library(library, before, after, "Mine") == b"head" + after.content + b"tail"
-    for other in (b"head", library + before.content):
-        with pytest.raises(ValueError, match="Mine: the compiled part is not that of these data"):
-            fill_library(other, before, after, "Mine")
+    library = b"head" + before.struct_bytes + b"tail"
+    assert fill_library_placeholders(library, before, after, "Mine") == b"head" + after.struct_bytes + b"tail"
+    for other in (b"head", library + before.struct_bytes):
+        with pytest.raises(ValueError, match="Mine: the compiled code does not fit these parameters"):
+            fill_library_placeholders(other, before, after, "Mine")
 
 
 PRINTED = """
@@ -162,19 +162,19 @@ def test_the_table_in_c_has_the_bytes_of_the_binaries(name: str, native: Path, t
     model, file = of(name)
     files = generate_sources(name, file)
     given = split_parameters(model, file)
-    data = make_fmu_data(model, file, given, {k: v for k, v in files.items() if k != "data.c"})
+    data = make_fmu_data_struct(model, file, given, {k: v for k, v in files.items() if k != "data.c"})
     for part, text in {**files, "print.c": PRINTED}.items():
         (tmp_path / part).write_text(text)
     command = (sys.executable, "-m", "ziglang", "cc", "-std=c11", *RELEASED)
     subprocess.run((*command, "data.c", "print.c", "-o", "print"), cwd=tmp_path, check=True)
-    assert subprocess.run([tmp_path / "print"], capture_output=True).stdout == data.content
+    assert subprocess.run([tmp_path / "print"], capture_output=True).stdout == data.struct_bytes
     for version in ("fmi2", "fmi3"):
         for path, content in members(native / version / f"{name}.fmu").items():
             if path.startswith("binaries/"):
                 copies = len([*images(content)])
-                assert (content.count(data.content), copies) == (copies, copies), path
-                assert PLACEHOLDER_NAME.encode() not in content
-                assert make_placeholder(model, given).content not in content
+                assert (content.count(data.struct_bytes), copies) == (copies, copies), path
+                assert PLACEHOLDER_FMU_NAME.encode() not in content
+                assert make_placeholder_data_struct(model, given).struct_bytes not in content
 
 
 @pytest.mark.slow
@@ -187,7 +187,7 @@ def test_each_variant_is_signed_and_has_a_number_of_its_own(tmp_path: Path) -> N
         model, file = of(NAMES[0])
         name = next(iter(model.parameter_fields()))
         changed = file.with_values({name: factor * file.values_by_name[name]}, "user", "test")
-        (path,) = build_fmus([NAMES[0]], ["fmi3"], changed, tmp_path, alias=alias)
+        (path,) = build_fmus([NAMES[0]], ["fmi3"], changed, tmp_path, fmu_alias=alias)
         for member, content in members(path).items():
             if not member.endswith(".dylib"):
                 continue
@@ -224,7 +224,7 @@ def test_a_variant_needs_no_compiler(name: str, native: Path, tmp_path: Path) ->
     model, file = of(name, alone[0])
     fixed = {
         n: 0.99 * file.values_by_name[n]
-        for n in split_parameters(model, file).data_values
+        for n in split_parameters(model, file).data_struct_values
         if n in file.values_by_name
     }
     changed = file.with_values(fixed, "user", "test")

@@ -9,7 +9,7 @@ import pytest
 from jointfmu_fmu_src.native.code.elementary import make_tables_header
 from jointfmu_fmu_src.native.code.emit import C_HELPER_FUNCTIONS, format_function
 from jointfmu_fmu_src.native.code.generate import RUNTIME_FOLDER
-from jointfmu_fmu_src.native.compiled.compiler import compile_libraries, library_file_name
+from jointfmu_fmu_src.native.compiled.compiler import compile_libraries, make_library_file_name
 
 pytestmark = pytest.mark.slow
 
@@ -28,7 +28,9 @@ def test_leading_results_are_the_same_without_the_others(tmp_path, has_workspace
         ca.if_else(x[0] > 0.0, ca.log(1.0 + x[2] * x[2]), sine),
         quotient * quotient,
     ]
-    text = format_function("f", "x -> y", x, c, results, has_workspace=has_workspace, leading_count=LEADING)
+    text = format_function(
+        "f", "x -> y", x, c, results, has_workspace=has_workspace, leading_result_count=LEADING
+    )
     files = {path.name: path.read_text() for path in RUNTIME_FOLDER.rglob("elementary.*")}
     head = '#include <math.h>\n#include <stddef.h>\n#include "elementary.h"\n'
     visible = '__attribute__((visibility("default")))'
@@ -38,7 +40,7 @@ def test_leading_results_are_the_same_without_the_others(tmp_path, has_workspace
         "f.c": head + C_HELPER_FUNCTIONS + declaration + text,
     }
     here = fmpy.platform_tuple
-    path = tmp_path / library_file_name("Function", here)
+    path = tmp_path / make_library_file_name("Function", here)
     path.write_bytes(compile_libraries("Function", files, ["elementary.c", "f.c"], [here])[here])
     function = ctypes.CDLL(str(path)).f
     function.argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p]

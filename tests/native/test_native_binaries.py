@@ -119,7 +119,7 @@ def test_no_static_library_of_the_compiler_is_linked_in(platform: str, tmp_path:
     (tmp_path / "run.c").write_text(source)
     own = Path(compiler.__file__).with_name("windows.c")
     (tmp_path / own.name).write_bytes(own.read_bytes())
-    options = [option for option in compiler._compiler_options(platform, "run") if option != "-s"]
+    options = [option for option in compiler._make_compiler_options(platform, "run") if option != "-s"]
     command = [sys.executable, "-m", "ziglang", "cc", *options, "run.c", "-v", "-o", "run.bin"]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True, timeout=300)
     linked = [x for x in done.stderr.splitlines() if re.match(r"(zig ld|ld\.lld|lld-link) ", x)]

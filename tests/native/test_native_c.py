@@ -35,7 +35,7 @@ from jointfmu_fmu_src.native.compiled.compiler import _write_source_folder as so
 from jointfmu_fmu_src.partners import PARTNERS
 from jointfmu_fmu_src.partners import load_partner_parameters as partner_parameters
 from jointfmu_tools.systems.fmu.assembly import assemble_system
-from jointfmu_tools.systems.fmu.build import make_sources
+from jointfmu_tools.systems.fmu.build import make_c_sources
 from jointfmu_tools.systems.system import load_system
 from natives import SAID
 
@@ -151,9 +151,9 @@ def c_of(name: str) -> Sources:
         counts = (
             len(parts.inputs),
             len(parts.outputs),
-            sum(len(p.variable_parameters) for p in parts.components),
+            sum(len(p.exposed_parameters) for p in parts.components),
         )
-        return Sources(make_sources(parts)[0], *counts)
+        return Sources(make_c_sources(parts)[0], *counts)
     files = {p.name: p.read_text() for p in [*list_runtime_files(), *(HOSTS / name).iterdir()]}
     return Sources(files, *ALONE[name])
 

@@ -30,7 +30,7 @@ from jointfmu_fmu_src.native.description import (
     format_fmi3_description,
 )
 from jointfmu_fmu_src.native.page import make_documentation
-from jointfmu_fmu_src.native.terminals import terminal_files
+from jointfmu_fmu_src.native.terminals import make_terminal_files
 from lxml import etree
 from PIL import Image
 from scipy.constants import zero_Celsius
@@ -76,7 +76,7 @@ def pages(name: str) -> dict[str, bytes]:
 
 @cache
 def pictures(name: str) -> dict[str, bytes]:
-    return terminal_files(MODELS[name])
+    return make_terminal_files(MODELS[name])
 
 
 def fmu(path: Path, xml: bytes, **files: bytes) -> str:
@@ -177,7 +177,9 @@ def test_the_description_says_what_it_is(name: str, version: int) -> None:
         ),
     ],
 )
-def test_what_the_fmu_can_do(name: str, version: int, interface: str, expected: dict[str, str]) -> None:
+def test_the_description_declares_the_capabilities_of_the_fmu(
+    name: str, version: int, interface: str, expected: dict[str, str]
+) -> None:
     common = {
         2: {
             "canGetAndSetFMUstate": "true",
@@ -466,12 +468,12 @@ from jointfmu_fmu_src.native.description import (
     format_fmi3_description,
 )
 from jointfmu_fmu_src.native.page import make_documentation
-from jointfmu_fmu_src.native.terminals import terminal_files
+from jointfmu_fmu_src.native.terminals import make_terminal_files
 from jointfmu.joints import MODELS
 
 for model in MODELS.values():
     file = load_default(model.joint)
-    files = make_documentation(model, file) | terminal_files(model)
+    files = make_documentation(model, file) | make_terminal_files(model)
     files |= {"2": format_fmi2_description(model, file, "{}", ["a.c"])}
     files |= {"3": format_fmi3_description(model, file, "{}")}
     files |= {"build": format_build_description(model, ["a.c"])}
@@ -578,7 +580,7 @@ def test_icons_are_small_and_tell_the_joints_apart() -> None:
 def test_an_icon_that_is_missing_is_named() -> None:
     nameless = replace(MODELS["GearContact"], name="GearContact2")
     with pytest.raises(ValueError, match=r"^GearContact2: \S+GearContact2\.png is missing; it must be"):
-        terminal_files(nameless)
+        make_terminal_files(nameless)
 
 
 class Page(HTMLParser):

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from jointfmu_fmu_src.native.code.elementary import make_tables_header
 from jointfmu_fmu_src.native.code.generate import RUNTIME_FOLDER
-from jointfmu_fmu_src.native.compiled.compiler import compile_libraries, library_file_name
+from jointfmu_fmu_src.native.compiled.compiler import compile_libraries, make_library_file_name
 
 pytestmark = pytest.mark.slow
 
@@ -34,7 +34,7 @@ def functions(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Callable[..
         )
     files = {path.name: path.read_text() for path in RUNTIME_FOLDER.rglob("elementary.*")}
     files |= {"elementary_tables.h": make_tables_header(), "shown.c": "\n".join(lines) + "\n"}
-    path = folder / library_file_name("Elementary", here)
+    path = folder / make_library_file_name("Elementary", here)
     path.write_bytes(compile_libraries("Elementary", files, ["elementary.c", "shown.c"], [here])[here])
     library, found = ctypes.CDLL(str(path)), {}
     for name in NAMES:

@@ -15,6 +15,9 @@ from jointfmu.parameters import load_default
 from jointfmu.quantity import build_parameter_set as make
 from jointfmu.quantity import flatten_parameters
 
+TOO_LARGE = "the inputs are too large, the output tau1 is not finite"
+"""Reason of an error by inputs for which the output tau1 of a drive overflows."""
+
 
 @pytest.fixture(params=NAMES)
 def name(request: pytest.FixtureRequest) -> str:
@@ -28,12 +31,12 @@ def test_a_list_of_intermediate_variables_is_left_out_with_a_warning(host: Host,
     instance = host(name, "fmi3")
     instance.fmu.fmi3FreeInstance(instance.fmu.component)
     instance.fmu.instantiate(
-        logMessage=lambda env, status, category, text: instance._log(status, category, text),
+        logMessage=lambda env, status, category, text: instance._store_log_message(status, category, text),
         requiredIntermediateVariables=[1, 2],
     )
     assert instance.warnings == [
-        "fmi3InstantiateCoSimulation: intermediate variables are wanted and left out; expected none, for "
-        "there is no intermediate update"
+        "fmi3InstantiateCoSimulation: the required intermediate variables are ignored; expected none, "
+        "because this FMU has no intermediate update"
     ]
     instance.start(GOOD[name]).step()
 
@@ -51,7 +54,7 @@ def test_beyond_the_table_the_last_tangent_continues_with_one_warning(
         settle(instance)
     (warning,) = instance.warnings
     assert text in warning
-    assert not [m for m in instance.messages if m.status > 1]
+    assert not [m for m in instance.messages if m.fmi_status > 1]
     y = [f[answer] for f in found]
     assert y[2] - y[1] == close(y[1] - y[0])  # a straight line
     tangent = abs((y[1] - y[0]) / (x[1] - x[0])) / lever
@@ -78,7 +81,7 @@ def test_each_way_of_leaving_the_tables_is_warned_of_once_as_in_the_package(
         assert instance.at(state) == near(name, {k: float(v) for k, v in outputs.items()})
         assert instance.warnings == list(warned.values())
     assert len(warned) == len(model.validity_limits)
-    assert {m.category for m in instance.messages if m.status == 1} == {"logStatusWarning"}
+    assert {m.message_category for m in instance.messages if m.fmi_status == 1} == {"logStatusWarning"}
 
 
 def test_an_input_at_zero_in_place_of_its_start_value_is_warned_of_once(
@@ -134,7 +137,7 @@ def test_a_value_at_the_end_of_every_interval_is_refused_or_not_as_in_the_packag
                 continue
             refusals += 1
             found = instance.refused(instance.fmu.exitInitializationMode)
-            if not reason.startswith("the inversion of the pressure"):  # round-off decides how that fails
+            if not reason.startswith("the iteration for the largest"):  # round-off decides how that fails
                 assert found == reason
     assert refusals > 50
 
@@ -208,8 +211,8 @@ def test_inputs_too_large_for_an_output_are_named(host: Host, version: str) -> N
     instance = host("HarmonicDriveSpring", version).start(GOOD["HarmonicDriveSpring"])
     before = instance.get()
     instance.set_values({"phi2": 1e308, "w2": 3.0})
-    message = "phi2 = 1e+308 rad, w2 = 3 rad/s, temperature = 293.15 K: too large, tau1 is not finite"
-    assert instance.refused(instance.step) == message
+    listed = "phi2 = 1e+308 rad, w2 = 3 rad/s, temperature = 293.15 K"
+    assert instance.refused(instance.step) == f"{listed}: {TOO_LARGE}"
     instance.set_values({"w2": 0.0} | GOOD["HarmonicDriveSpring"])
     assert instance.get() == before
 
@@ -220,7 +223,7 @@ def test_a_refusal_lists_the_largest_inputs_alone(host: Host, version: str) -> N
     instance.set_values({"phi1": 4.0, "w1": 5.0, "phi2": 1e308, "w2": 3.0})
     said = instance.refused(instance.step)
     listed = "phi1 = 4 rad, w1 = 5 rad/s, phi2 = 1e+308 rad, temperature = 293.15 K and 1 more"
-    assert said == f"{listed}: too large, tau1 is not finite"
+    assert said == f"{listed}: {TOO_LARGE}"
 
 
 def test_a_force_that_fades_away_is_never_refused(host: Host, version: str) -> None:
@@ -244,13 +247,13 @@ def test_events_are_logged_on_request_errors_and_warnings_always(host: Host, ver
         instance.at({"f": -5.0})
         instance.set_values({"f": math.nan})
         instance.refused(instance.step)
-        found = [(m.status, m.category) for m in instance.messages]
+        found = [(m.fmi_status, m.message_category) for m in instance.messages]
         assert found.count((3, "logStatusError")) == 1
         assert found.count((1, "logStatusWarning")) == 1
-        events = [m.text for m in instance.messages if m.category == "logEvents"]
+        events = [m.message_text for m in instance.messages if m.message_category == "logEvents"]
         assert ("tables evaluated again for changed parameters" in events) is logging
         assert len(found) == 2 + len(events)
-        assert {m.status for m in instance.messages if m.category == "logEvents"} <= {0}
+        assert {m.fmi_status for m in instance.messages if m.message_category == "logEvents"} <= {0}
 
 
 @pytest.mark.parametrize(
@@ -275,7 +278,7 @@ def test_categories_are_selected(
     instance.set_values({"f": math.nan})
     with pytest.raises(FMICallException):
         instance.step()
-    assert {m.category for m in instance.messages} == expected
+    assert {m.message_category for m in instance.messages} == expected
 
 
 def test_an_unknown_category_is_refused(host: Host, version: str) -> None:

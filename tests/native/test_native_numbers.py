@@ -14,7 +14,7 @@ from jointfmu_fmu_src import joints
 from jointfmu_fmu_src.joint_parts.native import (
     INTEGER_CONSTANT_NAMES,
     REAL_CONSTANT_NAMES,
-    CDefinitions,
+    CConstants,
     ModuleConstants,
 )
 from jointfmu_fmu_src.joints.harmonic_drive import native as drive_native
@@ -39,11 +39,10 @@ def pairs(*given: ModuleConstants) -> list[tuple[ModuleType, str]]:
 
 TABLES = pairs(REAL_CONSTANT_NAMES, INTEGER_CONSTANT_NAMES)
 EVERY = {
-    DRIVE: (*TABLES, *pairs(drive_native.REAL_CONSTANT_NAMES), (hysteresis, "MAX_LIMIT_ITERATIONS")),
+    DRIVE: (*TABLES, *pairs(drive_native.REAL_CONSTANT_NAMES), (hysteresis, "MAX_FRICTION_LIMIT_ITERATIONS")),
     GEAR: (*TABLES, (curve, "CLOSING_END_OVER_PLASTIC_SPOT_AREA")),
     BOLTED: tuple(
-        (equilibrium, name)
-        for name in ("MAX_FINAL_OVER_INITIAL_ENERGY_SLOPE", "MIN_OVER_PREVIOUS_CORRECTION_LENGTH")
+        (equilibrium, name) for name in ("MAX_FINAL_OVER_INITIAL_ENERGY_SLOPE", "MIN_SHORTENING_FACTOR")
     ),
 }
 
@@ -51,14 +50,14 @@ EVERY = {
 @contextmanager
 def numbers(given: Mapping[tuple[ModuleType, str], float]) -> Iterator[None]:
     """Other values of constants {(module, name): value}."""
-    kept = dict(generate._cached_law_texts)
-    generate._cached_law_texts.clear()  # they are of the actual numbers
+    kept = dict(generate._cached_law_sources)
+    generate._cached_law_sources.clear()  # they are of the actual numbers
     with pytest.MonkeyPatch.context() as patch:
         for (module, name), value in given.items():
             patch.setattr(module, name, value)
         yield
-    generate._cached_law_texts.clear()
-    generate._cached_law_texts.update(kept)
+    generate._cached_law_sources.clear()
+    generate._cached_law_sources.update(kept)
 
 
 def c_of(name: str, given: Mapping[tuple[ModuleType, str], float]) -> dict[str, str]:
@@ -81,9 +80,9 @@ def compiles(folder: Path, files: dict[str, str], text: str) -> bool:
 
 
 def test_one_name_of_a_constant_has_one_value() -> None:
-    first = CDefinitions({"MAX_ITERATIONS": 200}, {"TOLERANCE": 1e-9})
-    assert (first | CDefinitions({"MAX_ITERATIONS": 200})).integer_constants == {"MAX_ITERATIONS": 200}
-    for other in (CDefinitions({"MAX_ITERATIONS": 16}), CDefinitions({}, {"MAX_ITERATIONS": 16.0})):
+    first = CConstants({"MAX_ITERATIONS": 200}, {"TOLERANCE": 1e-9})
+    assert (first | CConstants({"MAX_ITERATIONS": 200})).integer_constants == {"MAX_ITERATIONS": 200}
+    for other in (CConstants({"MAX_ITERATIONS": 16}), CConstants({}, {"MAX_ITERATIONS": 16.0})):
         with pytest.raises(ValueError, match="C constant MAX_ITERATIONS has two values"):
             _ = first | other
 
@@ -100,7 +99,7 @@ def test_c_follows_the_numbers(name: str) -> None:
 
 def test_runtime_types_none_of_them_again() -> None:
     names = {constant for pairs in EVERY.values() for _, constant in pairs} | {"CURVE_NODES"}
-    folders = [generate.RUNTIME_FOLDER, *(parts.folder for parts in joints.FMU_PARTS.values())]
+    folders = [generate.RUNTIME_FOLDER, *(parts.joint_folder for parts in joints.FMU_BUILD_DATA.values())]
     for path in (path for folder in folders for path in folder.rglob("*.[ch]")):
         typed = re.findall(r"\b(\w+) = [-0-9]|#define (\w+)", path.read_text(encoding="utf-8"))
         assert names.isdisjoint(name for pair in typed for name in pair), path.name
@@ -128,7 +127,13 @@ def test_arrays_follow_a_count(
     ("name", "source", "module", "constant", "value"),
     [
         (GEAR, "curve.c", curve, "MAX_TABLE_NODES", 70_000),  # buckets hold a segment's number in 16 bits
-        (GEAR, "approach.c", curve, "CLOSING_STEPS", 49),  # the error is measured on pairs of segments
+        (
+            GEAR,
+            "approach.c",
+            curve,
+            "CONTACT_CLOSING_STEPS",
+            49,
+        ),  # the error is measured on pairs of segments
     ],
 )
 def test_build_refuses_what_does_not_fit(
@@ -149,6 +154,6 @@ def test_build_refuses_a_table_without_room(tmp_path: Path) -> None:
     usual_folder = tmp_path / "usual"
     jointfmu.load(DRIVE).build(usual_folder)  # compiled before the change, so that only the table is too long
     few = numbers({(curve, "MAX_TABLE_NODES"): 100})  # fewer than its first steps
-    with few, pytest.raises(RuntimeError, match="the table needs more than 100 nodes"):
+    with few, pytest.raises(RuntimeError, match="the table of the law needs more than 100 nodes"):
         jointfmu.load(DRIVE).build(tmp_path / "small")
     assert list(tmp_path.iterdir()) == [usual_folder]

@@ -21,7 +21,7 @@ import pytest
 import ziglang
 from clients import SYSROOT, needs, prepare_wine, qemu, unusable
 from fmpy import read_model_description
-from jointfmu_fmu_src.native.compiled.compiler import _COMMON_OPTIONS, ZIG_TARGETS
+from jointfmu_fmu_src.native.compiled.compiler import _COMMON_ZIG_OPTIONS, ZIG_TARGETS
 from natives import SAID
 
 from jointfmu.joints import MODELS
@@ -34,7 +34,7 @@ HOSTS = Path(__file__).parent / "hosts"
 VERSIONS = ("fmi2", "fmi3")
 
 BARE = (
-    "-target", "aarch64-linux-musl", *_COMMON_OPTIONS, "-w", "-DLINKED", "-nostdlib", "-static",
+    "-target", "aarch64-linux-musl", *_COMMON_ZIG_OPTIONS, "-w", "-DLINKED", "-nostdlib", "-static",
     "-fno-builtin-fprintf",
     *(
         f"-isystem{Path(ziglang.__file__).parent / 'lib' / 'libc' / 'include' / headers}"

@@ -45,6 +45,8 @@ def test_fmpy_compiles_the_sources_to_the_same_fmu(
     first, second = (
         ramp.run_ramp(fmu, model.ramp.input_name, model.ramp.end_value, step) for fmu in (built, again)
     )
-    for column, values in first.columns.items():
+    for column, values in first.variable_columns.items():
         scale = np.abs(values).max()
-        np.testing.assert_allclose(second.columns[column], values, rtol=0.0, atol=COMPILER_TOLERANCE * scale)
+        np.testing.assert_allclose(
+            second.variable_columns[column], values, rtol=0.0, atol=COMPILER_TOLERANCE * scale
+        )

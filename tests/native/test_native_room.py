@@ -10,7 +10,7 @@ from clients import needs
 from joint_cases import CASES
 from jointfmu_fmu_src.native.compiled import compiler
 from jointfmu_tools.systems.fmu.assembly import assemble_system
-from jointfmu_tools.systems.fmu.build import build_system
+from jointfmu_tools.systems.fmu.build import build_system_fmus
 from jointfmu_tools.systems.system import load_system
 
 from jointfmu.joints import MODELS
@@ -92,7 +92,7 @@ def test_a_joint_allocates_nothing_after_initialization(name, native, tmp_path):
 
 
 def test_a_system_allocates_nothing_after_initialization(tmp_path):
-    (fmu,) = build_system(
+    (fmu,) = build_system_fmus(
         assemble_system(load_system("robot_joint")), tmp_path, ("2",), (fmpy.platform_tuple,)
     )
     assert grown(counted(fmu, tmp_path / "unpacked"), {"load.tau_in": (-0.03, 0.03)}, 1e-2, 150) == 0

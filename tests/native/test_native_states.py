@@ -114,7 +114,7 @@ def test_a_state_of_a_joint_with_other_parameters_is_refused_by_name(
     said = receiver.refused(receiver.fmu.deserializeFMUState, data)
     sent, own = (fmu.description.guid for fmu in (sender, receiver))
     assert f"a state of another FMU, with the token '{sent}'" in said
-    assert f"a state that BoltedJoint with the token {own} serialized" in said
+    assert f"a state serialized by BoltedJoint with the token {own}" in said
     assert numbers(receiver) == before
 
 
@@ -126,7 +126,7 @@ def test_a_state_pointer_of_another_fmu_is_refused(host: Host, version: str, exc
     assert sizes[0] < sizes[1]
     for call in (bolted.fmu.setFMUState, bolted.fmu.serializeFMUState, bolted.fmu.freeFMUState):
         said = bolted.refused(call, foreign)
-        assert said.endswith("this is not an FMU state of BoltedJoint; expected one that it gave")
+        assert said.endswith("was not made by BoltedJoint; expected one that this FMU returned")
         assert numbers(bolted) == before
     gear.fmu.setFMUState(foreign)  # the refusals left it as it was
     gear.fmu.freeFMUState(foreign)

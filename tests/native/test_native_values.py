@@ -68,7 +68,7 @@ def test_all_flavours_and_interfaces_give_the_numbers_of_the_package(
         assert others == [found] * 3
         assert found == near(name, expected(inputs))
         assert python.at(inputs) == near(name, found)
-    assert not [m for one in natives for m in one.messages if m.status]
+    assert not [m for one in natives for m in one.messages if m.fmi_status]
 
 
 def test_each_input_counts_when_it_moves_alone(host: Host, name: str, version: str) -> None:
@@ -290,7 +290,7 @@ def test_a_parameter_changed_between_steps_is_as_if_it_had_always_been_so(
     assert instance.at({p: start[p] for p in TUNED[name]}) == before
     settle(instance)
     assert instance.get() == before
-    evaluations = [m for m in instance.messages if "tables evaluated again" in m.text]
+    evaluations = [m for m in instance.messages if "tables evaluated again" in m.message_text]
     assert len(evaluations) == len(changes) + 1
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import casadi as ca
 import numpy as np
 import pytest
-from jointfmu_fmu_src.joint_parts.graph import FunctionGraph
+from jointfmu_fmu_src.joint_parts.graph import CFunctionSet
 from jointfmu_fmu_src.joint_parts.sliders import add_slider_functions
 from jointfmu_fmu_src.native.code import elementary
 from jointfmu_fmu_src.native.code.emit import C_HELPER_FUNCTIONS, format_function
@@ -75,7 +75,7 @@ class SliderResultant(Structure):
 @pytest.fixture(scope="module")
 def library(tmp_path_factory: pytest.TempPathFactory) -> CDLL:
     """Library of the slider C code with all functions exported."""
-    g = FunctionGraph({}, None, [])
+    g = CFunctionSet({}, None, [])
     before = ca.GlobalOptions.getNumpyMode()
     ca.GlobalOptions.setNumpyMode(1)
     try:
@@ -85,14 +85,14 @@ def library(tmp_path_factory: pytest.TempPathFactory) -> CDLL:
     none = ca.SX.sym("none", 0)
     texts = [
         format_function(
-            f.name,
-            f.doc,
+            f.function_name,
+            f.signature_comment,
             ca.vertcat(*f.argument_symbols),
             none,
             f.result_expressions,
-            f.name.endswith("_seed"),
+            f.function_name.endswith("_seed"),
         )
-        for f in g.functions
+        for f in g.c_functions
     ]
     law = "\n".join(text.replace("\nvoid ", "\nstatic inline void ", 1) for text in texts)
     names = ("jenkins.c", "jenkins.h", "simd.h", "elementary.c", "elementary.h")

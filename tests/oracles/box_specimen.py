@@ -14,8 +14,8 @@ from jointfmu_tools.fem import modes
 from jointfmu_tools.fem.assembly import read_assembly
 from jointfmu_tools.fem.elasticity import Array
 from jointfmu_tools.fem.geometry import Assembly, BoltGrid, BoxSection
-from jointfmu_tools.fem.modes import DEFAULT_REFINEMENT
-from jointfmu_tools.joints.bolted_joint.frequencies import ASSEMBLY_FILE
+from jointfmu_tools.fem.modes import DEFAULT_MESH_REFINEMENT
+from jointfmu_tools.joints.bolted_joint.frequencies import BOX_SPECIMEN_ASSEMBLY_FILE
 from scipy.optimize import least_squares
 
 from jointfmu.joints.bolted_joint.law import BoltedJointParameters
@@ -68,7 +68,7 @@ def specimen(start: Assembly, lengths: Sequence[float]) -> Assembly:
 
 def shipped() -> Assembly:
     """The assembly with the identified lengths."""
-    return read_assembly(ASSEMBLY_FILE)
+    return read_assembly(BOX_SPECIMEN_ASSEMBLY_FILE)
 
 
 def lengths_of(assembly: Assembly) -> Array:
@@ -90,7 +90,7 @@ def identify(
     joint: BoltedJointParameters,
     preload: float,
     measured: Array,
-    refinement: float = DEFAULT_REFINEMENT,
+    refinement: float = DEFAULT_MESH_REFINEMENT,
     trials: int = 8,
     solve: Callable[..., Array] = frequencies,
 ) -> Identification:

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 from jointfmu_tools import cli
-from jointfmu_tools.exchange.export.placing import AXIS_ORDER
+from jointfmu_tools.exchange.export.target_model import AXIS_ORDER
 from jointfmu_tools.fem.elasticity import ElasticBody
 
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
@@ -82,7 +82,7 @@ def rigid_bodies(folder: Path, preload: float, moment: float, normal: str = "z")
         *("--normal", normal, "--out", folder / "springs.inp"),
     )
     x, y, z = AXIS_ORDER[normal]
-    spring = BoltedJointSpring.for_interface_nodes(load_default("bolted_joint").values)
+    spring = BoltedJointSpring.from_interface_nodes(load_default("bolted_joint").values)
     K = spring.evaluate(preload, moment, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     deck = (DECKS / "two_bodies.inp").read_text()
     for axis, place in ((1, x), (3, z)):
@@ -119,7 +119,7 @@ def meshed_blocks(folder: Path) -> list[Case]:
     top = [row[2] for node, row in run_deck(folder / "meshed.inp").items()]
     assert np.ptp(top) < 1e-4 * np.mean(top)
     joint = load_default("bolted_joint").values
-    spring = BoltedJointSpring.for_interface_nodes(joint)
+    spring = BoltedJointSpring.from_interface_nodes(joint)
     k = spring.curve.derivatives(spring.curve.inverse(pressure * 1e6), 1)[1]
     expected = FORCE / (joint.A_0 * float(k)) * 1e3 + FORCE * 2.0 * HEIGHT / (E * area.sum())
     return [("springs on a mesh: two elastic blocks [mm]", float(np.mean(top)), expected)]
@@ -201,11 +201,11 @@ EDGES = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4),
 
 def c3d20(body: ElasticBody) -> np.ndarray:
     """Nodes (20, n) of the elements in the order of CalculiX: corners, then the middles of EDGES."""
-    corners, others = np.split(np.asarray(body.basis.element_dofs), [8])
+    corners, others = np.split(np.asarray(body.finite_element_basis.element_dofs), [8])
     rows = list(corners[CORNERS])
     for i, j in EDGES:
-        middle = 0.5 * (body.nodes[:, rows[i]] + body.nodes[:, rows[j]])
-        away = np.abs(body.nodes[:, others] - middle[:, None]).sum(axis=0)
+        middle = 0.5 * (body.node_positions[:, rows[i]] + body.node_positions[:, rows[j]])
+        away = np.abs(body.node_positions[:, others] - middle[:, None]).sum(axis=0)
         assert away.min(axis=0).max() < 1e-12
         rows.append(np.take_along_axis(others, away.argmin(axis=0)[None], axis=0)[0])
     return np.array(rows)
@@ -215,7 +215,7 @@ def body_lines(body: ElasticBody, name: int, nodes: int, elements: int, down: fl
     """Lines of the deck for a body in mm and MPa, displaced by `down` [m]; 12 digits, because CalculiX reads
     20 characters."""
     yield f"*NODE, NSET=N{name}"
-    for i, (x, y, z) in enumerate(body.nodes.T * 1e3):
+    for i, (x, y, z) in enumerate(body.node_positions.T * 1e3):
         yield f"{nodes + i + 1}, {x:.12g}, {y:.12g}, {z - 1e3 * down:.12g}"
     cells = c3d20(body)
     yield f"*ELEMENT, TYPE=C3D20, ELSET=E{name}"
@@ -224,7 +224,7 @@ def body_lines(body: ElasticBody, name: int, nodes: int, elements: int, down: fl
         yield ", ".join(map(str, cell[15:]))
     face, corner = (2, 4) if name == 1 else (1, 0)
     yield f"*SURFACE, NAME=FACE{name}, TYPE=ELEMENT"
-    for i in np.flatnonzero(np.abs(body.nodes[2, cells[corner]]) < 1e-9):
+    for i in np.flatnonzero(np.abs(body.node_positions[2, cells[corner]]) < 1e-9):
         yield f"{elements + i + 1}, S{face}"
     yield f"*MATERIAL, NAME=M{name}\n*ELASTIC\n{body.E / 1e6:g}, {body.nu:g}"
     yield f"*SOLID SECTION, ELSET=E{name}, MATERIAL=M{name}"

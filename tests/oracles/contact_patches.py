@@ -14,7 +14,7 @@ from jointfmu.mechanics.footprint.bolts import pressure_distribution
 from jointfmu.mechanics.footprint.distribution import FrictionPatches, NodalField, PressureDistribution
 from jointfmu.mechanics.footprint.plate import BoltedPlate
 from jointfmu.mechanics.jenkins import SliderUpdate
-from jointfmu.mechanics.sliders import FOUNDATION_SLIDERS, sum_slider_forces, torsion_directions
+from jointfmu.mechanics.sliders import FOUNDATION_SLIDER_COUNT, sum_slider_forces, torsion_directions
 from jointfmu.parameters import load_default
 
 from .sphere_friction import load_levels, sliders_at_levels
@@ -231,9 +231,10 @@ def friction_and_losses(
     largest : largest approach [m], the unit of displacements and tilt
     """
     ratio = float(spring.joint.shear_stiffness_ratio())
-    patches = shape if isinstance(shape, FrictionPatches) else shape.as_patches()
+    patches = shape if isinstance(shape, FrictionPatches) else shape.make_friction_patches()
     gyration = np.sqrt(
-        shape.area_share @ np.sum(shape.position**2, axis=1) + shape.area_share @ patches.radius**2
+        shape.area_share @ np.sum(shape.position**2, axis=1)
+        + shape.area_share @ patches.slider_circle_radius**2
     )
     start = preloaded_approaches(spring.curve, shape, (mean_pressure(spring), motion.moment))
     approach = start - motion.tilt * largest * shape.position[:, 0] / gyration
@@ -271,8 +272,8 @@ def random_poles(shape: PressureDistribution, count: int) -> Array:
 
 def gross_slip_forces(points: FrictionPatches, friction: Array, poles: Array) -> Array:
     """Friction forces (p, 2) of points with friction limits (n) in rotations about poles (p, 2) [m]."""
-    x, y = torsion_directions(FOUNDATION_SLIDERS if np.any(points.radius) else 2)
-    places = points.position + points.radius[:, None] * np.column_stack([y, -x])[:, None]
+    x, y = torsion_directions(FOUNDATION_SLIDER_COUNT if np.any(points.slider_circle_radius) else 2)
+    places = points.position + points.slider_circle_radius[:, None] * np.column_stack([y, -x])[:, None]
     arm = places - poles[:, None, None]
     way = np.stack([-arm[..., 1], arm[..., 0]], axis=-1) / np.linalg.norm(arm, axis=-1)[..., None]
     return np.asarray(np.einsum("n,pkni->pi", friction, way)) / len(x)
@@ -286,7 +287,7 @@ def pole_deviations(shape: PressureDistribution, patches: FrictionPatches) -> Ar
     poles = random_poles(shape, POLE_COUNT)
     both = (
         gross_slip_forces(points, points.area_share * points.preload_pressure_ratio, poles)
-        for points in (shape.as_patches(), patches)
+        for points in (shape.make_friction_patches(), patches)
     )
     off = np.linalg.norm(np.subtract(*both), axis=1)
     return np.quantile(off, [0.95, 1.0])

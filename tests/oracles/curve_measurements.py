@@ -49,7 +49,7 @@ def preload_series(rng, quantity, noise, series=np.inf, points=20):
     """Preload [N] and stiffness [N/m] or frequency [Hz] with a relative noise."""
     P = np.geomspace(2e3, 30e3, points)
     joint = START.with_values(JOINT, "user", "synthetic").values
-    K = 1.0 / (1.0 / preload.joint_stiffness(joint, P) + 1.0 / series)
+    K = 1.0 / (1.0 / preload.compute_joint_stiffness(joint, P) + 1.0 / series)
     value = K if quantity == "stiffness" else np.sqrt(K / joint.mass) / (2.0 * np.pi)
     return P, value * np.exp(noise * rng.standard_normal(points))
 

@@ -18,7 +18,9 @@ def leave_one_out():
     """Leave each drive out: (drive, quantity, printed value, value scaled from the others [N.m or 1])."""
     for name, drive in DRIVES.items():
         law = scale_friction(
-            drive.drive_size, drive.ratio, tuple(other for other in DRIVES.values() if other is not drive)
+            drive.drive_size,
+            drive.speed_ratio,
+            tuple(other for other in DRIVES.values() if other is not drive),
         )
         yield name, "starting torque", drive.starting_torque, law.starting_torque
         if drive.running_torque is not None:
@@ -44,9 +46,9 @@ JOINTS = {"CSG-25-100": ("0.019", 150.0), "CSG-14-100": ("0.006", 28.0)}
 
 def robot_drive(name, drag):
     """Parameters of a catalogue drive of the robot, with the flexspline fixed."""
-    options = dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.options)
+    options = dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.command_options)
     options |= {"catalogue": name, "fixed": "flexspline", "temperature": f"{WARM}K", "motor_drag": drag}
-    return NEW_JOINT_COMMAND.make_joint(options).file.values
+    return NEW_JOINT_COMMAND.make_joint(options).parameter_file.values
 
 
 def motor_friction(drive):

@@ -16,7 +16,7 @@ TURNS = (0.5 * ARCMIN, 2.0 * ARCMIN, 6.0 * ARCMIN)
 @cache
 def drive_law():
     """Hysteresis law of the drive with the true parameters."""
-    return hysteresis.make_law(file("harmonic_drive", DRIVE).values)
+    return hysteresis.make_hysteresis_law(file("harmonic_drive", DRIVE).values)
 
 
 @cache

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jointfmu_tools.inputs.fractal import areal_roughness
+from jointfmu_tools.inputs.fractal import areal_fractal_roughness
 
 from jointfmu.contact.interface import evaluate_at_pressure, solve_largest_spot, stiffness_curve
 from jointfmu.contact.laws import yu2022
@@ -50,7 +50,7 @@ def cases():
             zhao,
             contact_modulus(zhao.side1, zhao.side2),
             profile.D + 1.0,
-            areal_roughness(profile.G, 2.0 - profile.D),
+            areal_fractal_roughness(profile.G, 2.0 - profile.D),
             (8e-3, float(np.sqrt(zhao.A_0))),
             np.geomspace(0.5e6, 16e6, 6),
         ),
@@ -66,7 +66,7 @@ def cases():
             yu,
             yu2022.effective_modulus(yu),
             flank.D + 1.0,
-            areal_roughness(flank.G, 2.0 - flank.D),
+            areal_fractal_roughness(flank.G, 2.0 - flank.D),
             (1e-3, float(np.sqrt(yu.A_0))),
             np.geomspace(0.3125e6, 10e6, 6),
         ),
@@ -78,7 +78,7 @@ def law_of_surface(case, D, G):
     law = case.law
     if hasattr(law.surface, "s_min"):
         return replace(law, surface=replace(law.surface, D=D, G=G))
-    profile = {"D": D - 1.0, "G": G / areal_roughness(1.0, 3.0 - D)}
+    profile = {"D": D - 1.0, "G": G / areal_fractal_roughness(1.0, 3.0 - D)}
     if hasattr(law, "surface1"):
         return replace(
             law, surface1=replace(law.surface1, **profile), surface2=replace(law.surface2, **profile)

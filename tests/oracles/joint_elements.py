@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jointfmu_tools.fem.elasticity import Cholesky
+from jointfmu_tools.fem.elasticity import CholeskyFactor
 from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate
 from jointfmu_tools.fem.reduction.elastic_bodies import reduce_bodies
 from jointfmu_tools.fem.reduction.states import CellwiseJoint, UnitLoadResponse, approach_at_stiffness
@@ -131,16 +131,16 @@ class PlateJoint:
             command
         elements   : True: one contact point for each element; False: nine points
         """
-        options = dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.options) | dict(example)
+        options = dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.command_options) | dict(example)
         drawn = read_drawing(options)
-        file, plates = drawn.file, drawn.plates
+        file, plates = drawn.parameter_file, drawn.bolted_plates
         joint = JointFiniteElements.from_assembly(plates.make_assembly(file), attached, refinement)
         if elements:
             joint = replace(joint, contact_interface=patches(joint.contact_interface))
         springs = plate_finite_elements._interface_stiffness(file, plates.preload, joint, None)
-        linear = joint.linearize(springs, file.values.bolt_stiffness)
+        linear = joint.linearise_joint(springs, file.values.bolt_stiffness)
         if refinement <= 1.0:
-            rigid = BoltedJointSpring.for_joint(file.values)
+            rigid = BoltedJointSpring.from_joint(file.values)
             bodies = reduce_bodies(linear, rigid, springs[:, 2], plates.preload)
             elastic = plate_finite_elements.set_elastic_bodies(file, bodies, attached)
         else:
@@ -157,7 +157,7 @@ class PlateJoint:
     @property
     def spring(self) -> BoltedJointSpring:
         """Spring with elastic plates."""
-        return BoltedJointSpring.for_joint(self.file.values)
+        return BoltedJointSpring.from_joint(self.file.values)
 
     def load(self) -> Array:
         """Forces and moments (6) at gross slip, or at the loss of the clamping force."""
@@ -182,13 +182,13 @@ def follow_motions(
 def stiffnesses(joint: PlateJoint) -> tuple[Array, Array]:
     """Stiffnesses (6) of the reduced joint and of finite elements for each motion, other motions held."""
     out = joint.spring.evaluate(joint.preload, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-    return np.array([float(out[name]) for name in AXES]), joint.linear.stiffness.diagonal()
+    return np.array([float(out[name]) for name in AXES]), joint.linear.stiffness_matrix.diagonal()
 
 
 def joint_on_cells(joint: PlateJoint, count: int) -> CellwiseJoint:
     """Joint with all compliances of `count` cells of the contact, without modes and patches."""
     fine = reduce_points(pressure_distribution(joint.rigid.values.pattern), count)
-    spring = BoltedJointSpring.for_joint(joint.rigid.values).with_nodes(fine)
+    spring = BoltedJointSpring.from_joint(joint.rigid.values).with_nodes(fine)
     at = joint.linear.joint_model.contact_interface
     bolts = (
         joint.linear.joint_model.bolt_positions
@@ -208,7 +208,9 @@ def pole_deviations(spring: BoltedJointSpring, preload: float, count: int) -> Ar
     values, shape, found = spring.joint, pressure_distribution(spring.joint.pattern), []
     friction = values.mu * values.A_0 * shape.area_share * preload_pressure(values, shape, preload, 0.0)
     poles = random_poles(shape, count)
-    for (x, y), force in zip(poles, gross_slip_forces(shape.as_patches(), friction, poles), strict=True):
+    for (x, y), force in zip(
+        poles, gross_slip_forces(shape.make_friction_patches(), friction, poles), strict=True
+    ):
         motions = [turn * np.array([y, -x, 0.0, 0.0, 0.0, 1.0]) for turn in POLE_ROTATIONS]
         found.append(
             np.linalg.norm(follow_motions(spring, motions, preload)[-1][:2] + force) / np.sum(friction)
@@ -247,12 +249,12 @@ class FrictionElements:
         values, ratio = spring.joint, float(spring.joint.shear_stiffness_ratio())
         approach, at = spring.curve.inverse(pressure), whole.contact_interface
         springs = np.outer(spring.curve.derivatives(approach, 1)[1], [ratio, ratio, 1.0])
-        linear = whole.linearize(springs, values.bolt_stiffness)
-        matrix = linear.body_matrix + linear.contact_matrix + linear.bolt_matrix
+        linear = whole.linearise_joint(springs, values.bolt_stiffness)
+        matrix = linear.body_stiffness_matrix + linear.contact_stiffness_matrix + linear.bolt_stiffness_matrix
         apart = [
             sign * whole.relative_displacement_matrix(axis) for axis, sign in ((0, 1.0), (1, 1.0), (2, -1.0))
         ]
-        K = linear.stiffness
+        K = linear.stiffness_matrix
         motion = np.linalg.solve(K, wrench) * force
         beam = ReducedBeam(
             np.array([0.5 / np.pi]),  # unit square of the frequency: the load is the motion
@@ -270,7 +272,7 @@ class FrictionElements:
     @classmethod
     def clamped(cls, joint: PlateJoint, wrench: Array) -> "FrictionElements":
         """Joint under the preload of its bolts; load 1 is the linear response at the friction limit."""
-        spring = BoltedJointSpring.for_joint(joint.rigid.values)
+        spring = BoltedJointSpring.from_joint(joint.rigid.values)
         pressure = spring.curve.derivatives(approach_at_stiffness(spring, joint.normal), 0)[0]
         return cls.of(joint.linear.joint_model, pressure, spring, joint.load()[0], wrench)
 
@@ -291,10 +293,10 @@ def compliance(
     """Compliance (3 P, 3 P) [m/N] of the patches for pairs of opposite forces, with fixed attachments."""
     count = apart[0].shape[0]
     free = np.setdiff1d(np.arange(matrix.shape[0]), np.concatenate([held[0], first + held[1]]))
-    factor = Cholesky(matrix[free][:, free])
+    factor = CholeskyFactor(matrix[free][:, free])
     rows = sp.vstack(apart).tocsr()[np.arange(3 * count).reshape(3, count).T.ravel()][:, free]
     blocks = (rows[i : i + RIGHT_SIDES_PER_SOLVE] for i in range(0, 3 * count, RIGHT_SIDES_PER_SOLVE))
-    return np.hstack([rows @ factor.solve(block.T.toarray()) for block in blocks])
+    return np.hstack([rows @ factor.solve_linear_system(block.T.toarray()) for block in blocks])
 
 
 def follow_loads(
@@ -347,16 +349,16 @@ class Lap:
     @classmethod
     def of(cls, refinement: float = 1.0) -> "Lap":
         """Lap of steel; element sizes are divided by `refinement`."""
-        given = dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.options) | FACES
+        given = dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.command_options) | FACES
         given |= STEEL_M12 | {"tapped": True}  # so the command makes no bodies
-        values = NEW_JOINT_COMMAND.make_joint(given).file.values
+        values = NEW_JOINT_COMMAND.make_joint(given).parameter_file.values
         plate = Plate(length=0.1, width=0.04, thickness=2e-3, E=206e9, nu=0.0, density=7850.0)
         bolts = BoltList(x=(0.0,), y=(0.0,), hole_diameter=2e-3, head_diameter=4e-3)
         assembly = Assembly("lap", plate, plate, bolts)
         joint = JointFiniteElements.from_assembly(assembly, "edge", refinement)
         held = []
         for body, ends in zip(joint.bodies, joint.attachment_unknowns, strict=True):
-            z = np.abs(body.nodes[2])
+            z = np.abs(body.node_positions[2])
             held.append(np.union1d(ends, 3 * np.flatnonzero(z > z.max() - 1e-9) + 2))
         joint = replace(joint, attachment_unknowns=(held[0], held[1]))
         at = patches(joint.contact_interface)
@@ -383,17 +385,17 @@ class Lap:
         """
         plate, beta = self.assembly.side1, reach / self.assembly.side1.length
         shear = 0.5 * beta**2 * plate.E * plate.thickness
-        spring = BoltedJointSpring.for_joint(self.values)
+        spring = BoltedJointSpring.from_joint(self.values)
         normal = shear / spring.friction_law.foundation().stiffness_ratio
         spring = replace(spring, curve=linear_curve(normal, LAP_LOAD / self.values.A_0 / normal))
         springs = np.tile([shear, shear, normal], (self.bodies.contact_interface.quadrature_area.size, 1))
-        return shear, spring, self.bodies.linearize(springs, 0.0)
+        return shear, spring, self.bodies.linearise_joint(springs, 0.0)
 
     def reduced(self, spring: BoltedJointSpring, linear: LinearJoint, normal: float) -> BoltedJointSpring:
         """Lap joint reduced to the modes of its plates."""
         stiffness = np.full(self.bodies.contact_interface.quadrature_area.size, normal)
         bodies = reduce_bodies(linear, spring, stiffness, LAP_LOAD)
-        whole = BoltedJointSpring.for_joint(replace(self.values, sides="elastic", bodies=bodies))
+        whole = BoltedJointSpring.from_joint(replace(self.values, sides="elastic", bodies=bodies))
         return replace(whole, curve=spring.curve)
 
     def compliances(self, reach: float) -> tuple[float, float, float]:

@@ -52,7 +52,7 @@ def decay(law, inertia, amplitude, periods=60, steps=500, kept=25):
     """Time and motion of a body released at an amplitude after first loading, by velocity Verlet."""
     grid = np.linspace(0.0, 1.1 * amplitude, 4001)
     friction = law.friction_force(grid)
-    elastic = law.elastic_spring.force(grid) if law.elastic_spring else 0.0 * grid
+    elastic = law.elastic_spring.elastic_force(grid) if law.elastic_spring else 0.0 * grid
     stiffness = (friction[1] + elastic[1]) / grid[1]
     h = 2.0 * np.pi * np.sqrt(inertia / stiffness) / steps
     turn, held = amplitude, friction[-1] if amplitude > grid[-1] else np.interp(amplitude, grid, friction)

@@ -44,8 +44,10 @@ SPEEDS = (0.01, 0.05, 0.1, 0.2, 0.5, 0.8, 1.5, 2.2, 3.2)
 
 def drive():
     """Parameter file of the drive with the true values."""
-    given = dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.options) | {"catalogue": "CSG-25-100"}
-    return NEW_JOINT_COMMAND.make_joint(given).file.with_values(TRUE_VALUES, "user", "made up")
+    given = dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.command_options) | {
+        "catalogue": "CSG-25-100"
+    }
+    return NEW_JOINT_COMMAND.make_joint(given).parameter_file.with_values(TRUE_VALUES, "user", "made up")
 
 
 def start():

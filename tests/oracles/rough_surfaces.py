@@ -1,19 +1,22 @@
 """Self-affine rough surfaces with wavelengths in a band: rms height, rms slope, periodic samples."""
 
 import numpy as np
-from jointfmu_tools.inputs.fractal import wave_power
+from jointfmu_tools.inputs.fractal import height_variance_density
 from jointfmu_tools.inputs.surfaces.heights import ArealMap
 
 
 def rms_height(H, G, longest, shortest):
     """rms height [m] of the waves between two wavelengths [m]: the integral of Phi over ln(frequency)."""
-    return np.sqrt((wave_power(1.0 / longest, H, G) - wave_power(1.0 / shortest, H, G)) / (2.0 * H))
+    return np.sqrt(
+        (height_variance_density(1.0 / longest, H, G) - height_variance_density(1.0 / shortest, H, G))
+        / (2.0 * H)
+    )
 
 
 def rms_slope(H, G, longest, shortest):
     """rms gradient [1] of the waves between two wavelengths [m]: the integral of (2 pi frequency)^2 Phi over
     ln(frequency)."""
-    high, low = (wave_power(1.0 / wave, H, G) / wave**2 for wave in (shortest, longest))
+    high, low = (height_variance_density(1.0 / wave, H, G) / wave**2 for wave in (shortest, longest))
     return 2.0 * np.pi * np.sqrt((high - low) / (2.0 - 2.0 * H))
 
 
@@ -24,7 +27,8 @@ def periodic(size, points, D, G, band, seed):
     D      : 1    fractal dimension of the surface, 2 < D < 3
     G      : [m]  fractal roughness in the sense of `isotropic`
     band   : [m]  longest and shortest wave, size >= longest > shortest >= 2 spacings
-    seed   : random seed of the phases; the amplitudes are those of `fractal.wave_power` without scatter
+    seed   : random seed of the phases; the amplitudes are those of
+             `fractal.height_variance_density` without scatter
 
     Raises ValueError if D is outside its interval or the band does not fit the square and its grid.
     """
@@ -42,6 +46,6 @@ def periodic(size, points, D, G, band, seed):
     f[~inside] = np.inf
     cell = 1.0 / (2.0 * np.pi * f**2 * size**2)  # share of ln f of one mode
     noise = np.fft.rfft2(np.random.default_rng(seed).standard_normal((points, points)))
-    waves = noise / np.abs(noise) * np.sqrt(wave_power(f, 3.0 - D, G) * cell)
+    waves = noise / np.abs(noise) * np.sqrt(height_variance_density(f, 3.0 - D, G) * cell)
     z = np.fft.irfft2(waves, s=(points, points)) * points**2
-    return ArealMap(z=z, dx=spacing, dy=spacing, name="synthetic periodic surface")
+    return ArealMap(z=z, dx=spacing, dy=spacing, scan_name="synthetic periodic surface")

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 from conftest import refused_line
-from jointfmu_fmu_src.proof.standard import MANIFEST_PATH, REFERENCE_FOLDER
-from jointfmu_tools.run.proof.checksum import ALGORITHMS
-from jointfmu_tools.run.proof.manifest import RelatedFiles
+from jointfmu_fmu_src.proof.standard import MANIFEST_PATH, REFERENCE_FILE_FOLDER
+from jointfmu_tools.run.proof.checksum import CHECKSUM_ALGORITHMS
+from jointfmu_tools.run.proof.manifest import RelatedFileReader
 
 EXPERIMENTS = b'<Experiments><Experiment name="rest" stopTime="1.0"/></Experiments>'
 HEAD = (
@@ -23,18 +23,20 @@ def fmu(path: Path, attributes: str) -> Path:
     with zipfile.ZipFile(path, "w") as archive:
         archive.writestr("modelDescription.xml", "<fmiModelDescription/>")
         archive.writestr(MANIFEST_PATH, f"<fmiReferences {HEAD}>{related}</fmiReferences>")
-        archive.writestr(f"{REFERENCE_FOLDER}/smoke.exp", EXPERIMENTS)
+        archive.writestr(f"{REFERENCE_FILE_FOLDER}/smoke.exp", EXPERIMENTS)
     return path
 
 
-@pytest.mark.parametrize("kind", [None, *ALGORITHMS])
+@pytest.mark.parametrize("kind", [None, *CHECKSUM_ALGORITHMS])
 def test_a_file_with_its_checksum_is_read(tmp_path: Path, kind: str | None) -> None:
     """Without a stated type the checksum is SHA3-256; missing files and web addresses are not compared."""
     name = (kind or "SHA3-256").lower()
     name = name.replace("-", "_") if name.startswith("sha3") else name.replace("-", "")
     digest = hashlib.new(name, EXPERIMENTS).hexdigest().upper()
     stated = f'checksum="{digest}"' + (f' checksumType="{kind}"' if kind else "")
-    assert [one.name for one in RelatedFiles(fmu(tmp_path / "a.fmu", stated)).read_experiments()] == ["rest"]
+    assert [
+        one.experiment_name for one in RelatedFileReader(fmu(tmp_path / "a.fmu", stated)).read_experiments()
+    ] == ["rest"]
 
 
 @pytest.mark.parametrize(

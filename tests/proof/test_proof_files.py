@@ -24,9 +24,9 @@ from jointfmu_fmu_src.proof.experiments import (
     make_uncertainty_study,
 )
 from jointfmu_fmu_src.proof.files import REFERENCE_TOLERANCE
-from jointfmu_fmu_src.proof.members import get_experiments, make_proof_files
-from jointfmu_fmu_src.proof.reference import Stimulus, compute_results
-from jointfmu_fmu_src.proof.series import TimeSeries, format_csv, parse_csv
+from jointfmu_fmu_src.proof.members import get_reference_experiments, make_proof_files
+from jointfmu_fmu_src.proof.reference import Stimulus, compute_reference_results
+from jointfmu_fmu_src.proof.series import TimeSeries, format_time_series_csv, parse_time_series_csv
 from jointfmu_tools.run.proof import manifest
 from jointfmu_tools.studies.uncertainty import study as study_files
 from lxml import etree
@@ -49,7 +49,7 @@ def given(name: str) -> tuple[Model, ParameterFile]:
 
 @cache
 def made(name: str) -> tuple[ReferenceExperiment, ...]:
-    return get_experiments(*given(name))
+    return get_reference_experiments(*given(name))
 
 
 @cache
@@ -76,7 +76,7 @@ def test_the_manifest_is_valid_and_all_that_it_names_is_there(name: str) -> None
     own = Path(__file__).parent / "standards" / "fmi3LayeredStandardReferenceManifest.xsd"
     data = members(name)[standard.MANIFEST_PATH]
     schema(own).assertValid(etree.fromstring(data))
-    below = {path.removeprefix(f"{standard.REFERENCE_FOLDER}/") for path in members(name)}
+    below = {path.removeprefix(f"{standard.REFERENCE_FILE_FOLDER}/") for path in members(name)}
     named = [related.get("source", "") for related in ElementTree.fromstring(data)]
     outside = {"../../documentation/index.html", "../../documentation/fmi-ls-ref.txt"}
     assert set(named) - outside <= below
@@ -86,7 +86,7 @@ def test_the_manifest_is_valid_and_all_that_it_names_is_there(name: str) -> None
     used = {
         child.get("source")
         for path in experiments
-        for child in ElementTree.fromstring(members(name)[f"{standard.REFERENCE_FOLDER}/{path}"]).iter()
+        for child in ElementTree.fromstring(members(name)[f"{standard.REFERENCE_FILE_FOLDER}/{path}"]).iter()
     }
     assert {path for path in below if path.startswith("experiments/")} <= used
 
@@ -107,7 +107,7 @@ def test_parameter_sets_are_valid_and_have_every_parameter(name: str) -> None:
 @pytest.mark.parametrize("name", EVERY)
 def test_every_experiment_states_times_and_tolerance(name: str) -> None:
     for purpose in standard.EXPERIMENT_PURPOSES:
-        root = ElementTree.fromstring(members(name)[f"{standard.REFERENCE_FOLDER}/{purpose}.exp"])
+        root = ElementTree.fromstring(members(name)[f"{standard.REFERENCE_FILE_FOLDER}/{purpose}.exp"])
         for one in root.iter("Experiment"):
             assert one[0].tag == "TransientSimulation"
             assert float(one.get("tolerance", "nan")) == REFERENCE_TOLERANCE
@@ -118,27 +118,27 @@ def test_every_experiment_states_times_and_tolerance(name: str) -> None:
 def test_references_are_those_of_the_joint_itself(name: str) -> None:
     """References are computed by functions of the joint that the builders do not call."""
     model, file = given(name)
-    ramp = next(one for one in made(name) if one.name == "load ramp")
+    ramp = next(one for one in made(name) if one.experiment_name == "load ramp")
     joint = law(name, parameters(name))
     rest = {v.name: file.start_value(v.name) for v in model.inputs}
     end = model.with_load_range(joint.spring, rest).ramp.end_value
-    assert ramp.stimulus.levels[-1] == pytest.approx(end, rel=1e-8)
+    assert ramp.input_stimulus.input_levels[-1] == pytest.approx(end, rel=1e-8)
     for i in (5, 20):
-        expected = joint(rest | {model.ramp.input_name: float(ramp.stimulus.levels[i])})
+        expected = joint(rest | {model.ramp.input_name: float(ramp.input_stimulus.input_levels[i])})
         for output, value in expected.items():
             # memory takes the way in steps: friction is the same, its work is summed otherwise
-            assert ramp.results.columns[output][i] == pytest.approx(value, rel=1e-9, abs=1e-15)
+            assert ramp.reference_results.columns[output][i] == pytest.approx(value, rel=1e-9, abs=1e-15)
 
 
 @pytest.mark.parametrize("name", [name for name in NAMES if MODELS[name].advance])
 def test_the_loop_shows_memory(name: str) -> None:
     """At the same input, outputs on loading and unloading differ by far more than the tolerance."""
-    loop = next(one for one in made(name) if one.name == "loop")
-    levels = loop.stimulus.levels
+    loop = next(one for one in made(name) if one.experiment_name == "loop")
+    levels = loop.input_stimulus.input_levels
     first, second = (i for i in range(1, levels.size - 1) if levels[i] == levels[0])
     apart = [
         abs(column[first] - column[second]) / np.max(np.abs(column))
-        for column in loop.results.columns.values()
+        for column in loop.reference_results.columns.values()
         if np.any(column)
     ]
     assert max(apart) > 1e3 * REFERENCE_TOLERANCE
@@ -152,7 +152,7 @@ def test_every_joint_with_memory_has_a_loop() -> None:
 def test_neighbours_lie_just_inside_what_is_refused(name: str) -> None:
     """The next value towards the end of the interval is refused, by the interval or by the joint."""
     model, file = given(name)
-    found = [one for one in made(name) if one.doc.startswith("inside ")]
+    found = [one for one in made(name) if one.experiment_description.startswith("inside ")]
     assert found or name in PARTNERS  # whose numbers may have no end
     for one in found:
         usual = {
@@ -170,7 +170,7 @@ def test_neighbours_lie_just_inside_what_is_refused(name: str) -> None:
         if model.parameter_fields()[parameter].metadata["whole"]:
             further = value + math.copysign(1.0, end - own)
         with pytest.raises((ValueError, RuntimeError, ArithmeticError)):
-            compute_results(
+            compute_reference_results(
                 model,
                 replace_values(file.values, {parameter: further}),
                 {v.name: file.start_value(v.name) for v in model.inputs},
@@ -199,9 +199,9 @@ def test_one_shipped_model_at_least_is_carried_by_the_fmu_of_another() -> None:
 @pytest.mark.parametrize("name", NAMES)
 def test_the_uncertainty_experiment_can_be_read_as_a_study(name: str, tmp_path: Path) -> None:
     path = tmp_path / "study.toml"
-    path.write_bytes(members(name)[f"{standard.REFERENCE_FOLDER}/parameters/study.toml"])
+    path.write_bytes(members(name)[f"{standard.REFERENCE_FILE_FOLDER}/parameters/study.toml"])
     assert study_files.read_study(path) == make_uncertainty_study(*given(name))
-    samples = [one for one in made(name) if one.purpose == "uncertainty-analysis"]
+    samples = [one for one in made(name) if one.experiment_purpose == "uncertainty-analysis"]
     assert len(samples) == 6
     for one in samples:
         for parameter, value in one.variable_values.items():
@@ -241,17 +241,17 @@ def test_a_course_over_time_shows_itself_in_its_proof_alone(name: str) -> None:
     model, file = given(name)
     assert not any(value for key, value in file.values_by_name.items() if key.endswith("height"))
     one = made(name)[1]
-    column = one.results.columns[model.outputs[0].name]
+    column = one.reference_results.columns[model.outputs[0].name]
     assert np.max(np.abs(column - np.linspace(0.0, column[-1], column.size))) > 1e-9 * column[-1]
 
 
 def test_a_mass_under_a_constant_force_moves_as_newton_says() -> None:
     model, file = given("TranslationalMass")
     one = made("TranslationalMass")[1]
-    t, f = one.stimulus.sampling_instants, one.variable_values[model.ramp.input_name]
+    t, f = one.input_stimulus.sampling_instants, one.variable_values[model.ramp.input_name]
     a = f / file.values.m
     for output, expected in (("s", 0.5 * a * t**2), ("v", a * t), ("a", a + 0.0 * t)):
-        assert one.results.columns[output] == pytest.approx(expected, rel=1e-11)
+        assert one.reference_results.columns[output] == pytest.approx(expected, rel=1e-11)
 
 
 def test_a_weight_keeps_its_energy() -> None:
@@ -259,7 +259,7 @@ def test_a_weight_keeps_its_energy() -> None:
     model, file = given("RotationalInertia")
     values = replace_values(file.values, {"m": 2.0, "l": 0.3})
     drive = Stimulus("tau_a", np.full(21, 1.0), 0.05)
-    found = compute_results(model, values, {v.name: 0.0 for v in model.inputs}, drive).columns
+    found = compute_reference_results(model, values, {v.name: 0.0 for v in model.inputs}, drive).columns
     potential = 2.0 * GRAVITY * 0.3 * (1.0 - np.cos(found["phi"]))
     energy = 0.5 * file.values.J * found["w"] ** 2 + potential
     assert energy == pytest.approx(found["phi"], rel=1e-9, abs=1e-12)
@@ -273,37 +273,37 @@ def test_series_are_written_and_read_alike() -> None:
     series = TimeSeries(
         np.array([0.0, 0.5, 1.0]), {"a": np.array([0.0, -0.0, 1.0 / 3.0]), "b.c": np.arange(3.0)}
     )
-    written = format_csv(series)
+    written = format_time_series_csv(series)
     assert written.splitlines()[0] == '"time","a","b.c"'
-    back = parse_csv(written, "x")
+    back = parse_time_series_csv(written, "x")
     assert back.time.tolist() == [0.0, 0.5, 1.0]
     assert {name: column.tolist() for name, column in back.columns.items()} == {
         name: column.tolist() for name, column in series.columns.items()
     }
-    assert format_csv(series, 3).splitlines()[-1] == "1.0,0.333,2"
+    assert format_time_series_csv(series, 3).splitlines()[-1] == "1.0,0.333,2"
 
 
 def test_a_jump_is_taken_where_it_stands() -> None:
-    series = parse_csv("time,u\n0,0\n1,1\n1,5\n2,6\n", "x")
+    series = parse_time_series_csv("time,u\n0,0\n1,1\n1,5\n2,6\n", "x")
     times = np.array([0.5, 1.0, 1.5, 3.0])
-    assert series.interpolate("u", times).tolist() == [0.5, 5.0, 5.5, 6.0]
-    assert series.interpolate_left("u", times).tolist() == [0.5, 1.0, 5.5, 6.0]
-    assert series.interpolate_constant("u", times).tolist() == [0.0, 5.0, 5.0, 6.0]
+    assert series.interpolate_linearly("u", times).tolist() == [0.5, 5.0, 5.5, 6.0]
+    assert series.interpolate_before_jumps("u", times).tolist() == [0.5, 1.0, 5.5, 6.0]
+    assert series.interpolate_stepwise("u", times).tolist() == [0.0, 5.0, 5.0, 6.0]
 
 
 @pytest.mark.parametrize(
     ("content", "said"),
     [
-        ("", "expected 'time' first"),
-        ("u,time\n0,0\n", "expected 'time' first"),
-        ("time,u\n", "expected 'time' first, and rows"),
-        ("time,u,u\n0,1,2\n", "given twice"),
-        ("time,u\n0,1\n1\n", "rows of 2 numbers"),
-        ("time,u\n0,one\n", "rows of 2 numbers"),
-        ("time,u\n1,1\n0,1\n", "the time falls"),
-        ("time,u\nnan,1\n", "the time falls or is not finite"),
+        ("", "is empty; expected columns, 'time' first"),
+        ("u,time\n0,0\n", "the first column is 'u', expected 'time'"),
+        ("time,u\n", "no rows below its header"),
+        ("time,u,u\n0,1,2\n", "column 'u' is given twice"),
+        ("time,u\n0,1\n1\n", "row 2 has 1 numbers, expected 2"),
+        ("time,u\n0,one\n", "'one'; expected a number for each column"),
+        ("time,u\n1,1\n0,1\n", "row 2: time = 0 s; expected finite times that never decrease"),
+        ("time,u\nnan,1\n", "row 1: time = nan s; expected finite times"),
     ],
 )
 def test_a_broken_series_is_refused(content: str, said: str) -> None:
     with pytest.raises(ValueError, match=f"^x: .*{re.escape(said)}"):
-        parse_csv(content, "x")
+        parse_time_series_csv(content, "x")

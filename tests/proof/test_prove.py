@@ -20,7 +20,7 @@ from fmpy.util import read_csv, read_ref_opt_file
 from jointfmu_fmu_src.native.build import build_native_fmu as native_build
 from jointfmu_fmu_src.proof.files import REFERENCE_TOLERANCE
 from jointfmu_fmu_src.proof.members import make_proof_files
-from jointfmu_fmu_src.proof.standard import REFERENCE_FOLDER
+from jointfmu_fmu_src.proof.standard import REFERENCE_FILE_FOLDER
 from jointfmu_tools import cli
 from jointfmu_tools.run.proof.importers import SUPPORTED_FMI_VERSIONS as KNOWN
 from natives import VERSIONS
@@ -81,7 +81,7 @@ def test_fmus_of_other_laws_prove_themselves(
     """FMUs of other laws pass their own proof, also under a name that the user chose."""
     name = KINDS[joint].models[-1].name
     with here_alone("3"):
-        fmu = native_build(name, load_default(joint, law), tmp_path, "3", alias="own_joint")
+        fmu = native_build(name, load_default(joint, law), tmp_path, "3", fmu_alias="own_joint")
     assert fmu.name == "own_joint.fmu"
     assert_all_pass(proved(capsys, fmu))
 
@@ -178,7 +178,7 @@ def test_a_library_that_crashes_fails_in_one_line(
     assert cli.main(["prove", str(tmp_path / fmu.name)]) == 1
     assert capsys.readouterr().out.splitlines()[-2:] == [
         f"missed: {line}",
-        "it does not start, nothing was executed",
+        "the FMU does not start, nothing was executed",
     ]
     assert re.fullmatch(r"start: fmpy ended with status -\d+; the FMU's library may be broken", line)
 
@@ -238,13 +238,17 @@ def test_a_refused_parameter_is_reported_in_the_words_of_the_fmu(
     [
         ("fmi-ls-manifest.xml", None, "has no extra/org.fmi-standard.fmi-ls-ref/fmi-ls-manifest.xml"),
         ("fmi-ls-manifest.xml", b"<fmi", "fmi-ls-manifest.xml is not valid XML"),
-        ("fmi-ls-manifest.xml", b"<fmiReferences/>", "is of None, expected 'org.fmi-standard.fmi-ls-ref'"),
+        (
+            "fmi-ls-manifest.xml",
+            b"<fmiReferences/>",
+            "fmi-ls-name = None, expected 'org.fmi-standard.fmi-ls",
+        ),
         (
             "validation.exp",
             None,
             "has no extra/org.fmi-standard.fmi-ls-ref/validation.exp, which its manifest",
         ),
-        ("load_ramp_ref.csv", b"", "load_ramp_ref.csv: begins with ''; expected 'time' first"),
+        ("load_ramp_ref.csv", b"", "load_ramp_ref.csv: is empty; expected columns, 'time' first"),
         ("load_ramp_ref.csv", b"\xff", "is not a text; expected UTF-8"),
         ("e_0_999999.ssv", b"<a", "e_0_999999.ssv is not valid XML"),
     ],
@@ -290,7 +294,7 @@ def test_an_fmu_of_another_version_than_the_importer_takes_is_refused(
     native: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     line = refused_line(capsys, "prove", native / "fmi3" / f"{NAME}.fmu", "--in", "libcosim")
-    assert "is of FMI 3.0, libcosim takes 2.0" in line
+    assert "is of FMI 3.0, but libcosim takes only 2.0" in line
 
 
 def resealed(source: Path, target: Path, parameter: str, value: float) -> Path:
@@ -300,15 +304,15 @@ def resealed(source: Path, target: Path, parameter: str, value: float) -> Path:
     file = load_default(model.joint).with_values({parameter: value}, "user", "test")
     made = make_proof_files(model.with_parameters(file.joint, file.values), file)
     own = {
-        path.removeprefix(f"{REFERENCE_FOLDER}/"): data
+        path.removeprefix(f"{REFERENCE_FILE_FOLDER}/"): data
         for path, data in made.items()
-        if path.startswith(REFERENCE_FOLDER)
+        if path.startswith(REFERENCE_FILE_FOLDER)
     }
     old = rf'name="{re.escape(parameter)}".*?start="([^"]*)"'.encode()
 
     def change(name: str, data: bytes) -> bytes | None:
         if name != "modelDescription.xml":
-            return None if name.startswith(REFERENCE_FOLDER) else data
+            return None if name.startswith(REFERENCE_FILE_FOLDER) else data
         match = re.search(old, data, re.DOTALL)
         assert match is not None
         return data[: match.start(1)] + repr(value).encode() + data[match.end(1) :]
@@ -345,7 +349,7 @@ def test_an_fmu_is_not_compared_with_the_file_of_another_joint(
 ) -> None:
     file = KINDS[MODELS[OTHER].joint].default_file()
     line = refused_line(capsys, "prove", fmu, "--against", file)
-    assert f"{NAME}.fmu: does not have the variables of {OTHER}, the FMUs of {file}" in line
+    assert f"{NAME}.fmu: does not have the inputs and outputs of {OTHER}; expected an FMU of" in line
     line = refused_line(capsys, "prove", fmu, "--against", file, "--listing", "out")
     assert "leave out --against" in line
 
@@ -365,7 +369,7 @@ def test_a_manifest_of_an_older_draft_is_read(
     address, a start time."""
     with zipfile.ZipFile(fmu) as archive:
         text, drive = (
-            archive.read(f"{REFERENCE_FOLDER}/experiments/01_load_ramp_{x}.csv").decode()
+            archive.read(f"{REFERENCE_FILE_FOLDER}/experiments/01_load_ramp_{x}.csv").decode()
             for x in ("ref", "in")
         )
     f = drive.split(",")[-1].strip()
@@ -407,8 +411,12 @@ def test_what_is_not_executed_is_said(fmu: Path, tmp_path: Path, capsys: pytest.
     )
     path = other_manifest(fmu, tmp_path / "own.fmu", experiments)
     verdicts = [one["verdict"] for one in proved(capsys, path)["experiments"]]
-    kind = "not executed: has References of type application/hdf5, text/csv is read"
-    assert verdicts == ["not executed: is a SteadyState", kind, *2 * ["runs, no reference"]]
+    kind = "not executed: has References of type application/hdf5; only text/csv is supported"
+    assert verdicts == [
+        "not executed: is a SteadyState; only TransientSimulation is supported",
+        kind,
+        *2 * ["runs, no reference"],
+    ]
     assert cli.main(["prove", str(path)]) == 0
     assert "2 passed, 0 missed, 2 not executed" in capsys.readouterr().out
 
@@ -417,7 +425,11 @@ def test_what_is_not_executed_is_said(fmu: Path, tmp_path: Path, capsys: pytest.
     ("experiment", "files", "said"),
     [
         ('<References source="y.csv"/>', {"y.csv": b"time,z\n1,0\n"}, "the FMU has no variable 'z'"),
-        ('<Parameters source="p.ssv"/>', {"p.ssv": b"mm"}, "side1.E is given in 'MPa', expected 'Pa'"),
+        (
+            '<Parameters source="p.ssv"/>',
+            {"p.ssv": b"mm"},
+            "of side1.E: unit 'MPa', expected 'Pa'",
+        ),
     ],
 )
 def test_an_experiment_that_does_not_fit_the_fmu_fails_by_name(

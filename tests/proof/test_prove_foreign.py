@@ -10,7 +10,12 @@ import numpy as np
 import pytest
 from clients import needs
 from conftest import RELEASED, refused_line
-from jointfmu_fmu_src.proof.standard import CO_SIMULATION, MANIFEST_PATH, MODEL_EXCHANGE, REFERENCE_FOLDER
+from jointfmu_fmu_src.proof.standard import (
+    CO_SIMULATION,
+    MANIFEST_PATH,
+    MODEL_EXCHANGE,
+    REFERENCE_FILE_FOLDER,
+)
 from numpy.typing import NDArray
 from proofs import BOTH, ECOS, LIBCOSIM, copy, other_manifest, proved, replaced
 
@@ -92,7 +97,7 @@ def test_events_of_all_kinds_are_met(
     last = "passed" if own else "missed"
     assert runs == [(name, way, verdict) for name, verdict in (("single", "passed"), ("double", last))
                     for way in (BOTH if own else BOTH[:1])]  # fmt: skip
-    kind = "double, co-simulation: gain is of type Enumeration, which this importer does not take"
+    kind = "double, co-simulation: gain is of type Enumeration, which this importer does not take; use fmpy"
     assert found["misses"] == ([] if own else [kind])
     outputs = [point["output"] for point in found["experiments"][0]["outputs"]]
     assert outputs == ["x", "sampled", "fired"]
@@ -183,7 +188,9 @@ def test_an_fmu_for_model_exchange_only_is_refused_for_ecos(
     neuron: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     refused = refused_line(capsys, "prove", exchange_only(neuron, tmp_path), "--in", "ecos")
-    assert refused.endswith("is for model exchange, ecos runs co-simulation\n")
+    assert refused.endswith(
+        "has only model exchange, but ecos runs only co-simulation; choose another importer\n"
+    )
 
 
 def test_a_missed_event_misses_by_name(
@@ -243,9 +250,9 @@ def test_what_lies_elsewhere_or_in_other_formats_is_left_out(
     path = copy(path, tmp_path / "m.fmu", replaced(Path(MANIFEST_PATH).name, b"</fmiReferences>", more))
     found = {one["name"]: one["verdict"] for one in proved(capsys, path, status=1)["experiments"]}
     assert found == {
-        "two": "not executed: has 2 References, one is read",
-        "https://example.org/far.exp": "not executed: lies outside of the FMU",
-        "plan.txt": "not executed: is of type text/plain, application/x-ma-hs-experiments is read",
+        "two": "not executed: has 2 References; only one is supported",
+        "https://example.org/far.exp": "not executed: its file is outside the FMU",
+        "plan.txt": "not executed: its type is text/plain; only application/x-ma-hs-experiments is supported",
     }
 
 
@@ -271,7 +278,7 @@ def test_the_example_of_the_standard_is_read(
     files |= {"test1-ref.csv": csv(TIME, exact(TIME))}
     path = copy(neuron, tmp_path / "example.fmu", lambda name, data: data, **files)
     with zipfile.ZipFile(path) as archive:
-        assert f"{REFERENCE_FOLDER}/baseline-params.ssv" not in archive.namelist()
+        assert f"{REFERENCE_FILE_FOLDER}/baseline-params.ssv" not in archive.namelist()
     verdicts = [(one["name"], one["verdict"]) for one in proved(capsys, path)["experiments"]]
-    kind = "not executed: has References of type application/hdf5, text/csv is read"
+    kind = "not executed: has References of type application/hdf5; only text/csv is supported"
     assert verdicts == [("Test1", "passed"), ("Test1", "passed"), ("Test2", kind)]

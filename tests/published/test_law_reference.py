@@ -11,12 +11,12 @@ from jointfmu_tools.studies.published.law_reference import (
     LawComparison,
     compare_laws,
     format_law_summary,
-    missed_quantities,
+    list_missed_quantities,
     read_reference_cases,
 )
 
 from jointfmu.contact.laws import LAWS
-from jointfmu.contact.powerlaw import SmoothTerm
+from jointfmu.contact.powerlaw import SmoothFunctionTerm
 from jointfmu.joints import KINDS
 from jointfmu.joints.harmonic_drive import prescribed_midline
 from jointfmu.quantity import flatten_fields
@@ -25,7 +25,7 @@ from jointfmu.quantity import flatten_fields
 def test_all_laws_agree():
     compared = compare_laws()
     assert {c.law for c in compared} == {law for kind in KINDS.values() for law in kind.laws}
-    assert missed_quantities(compared) == []
+    assert list_missed_quantities(compared) == []
     assert format_law_summary(compared).endswith("missed: none")
 
 
@@ -39,7 +39,7 @@ def test_every_choice_of_a_law_has_a_case():
 
 def scale_term(term, factor):
     """Term of a contact spot with its value multiplied by a factor."""
-    if isinstance(term, SmoothTerm):
+    if isinstance(term, SmoothFunctionTerm):
         return replace(term, spot_function=lambda t: factor * term.spot_function(t))
     return replace(term, coefficient=factor * term.coefficient)
 
@@ -85,7 +85,7 @@ def moved(law, quantity):
 )
 def test_a_law_that_moves_by_a_percent_is_missed(law, quantity, monkeypatch, capsys):
     monkeypatch.setattr(*moved(law, quantity))
-    missed = missed_quantities(compare_laws())
+    missed = list_missed_quantities(compare_laws())
     assert {name.partition(".")[0] for name in missed} == {law}
     if quantity == "midline":
         assert missed == [f"{law}.tau", f"{law}.K_WTS"]

@@ -7,25 +7,25 @@ from pathlib import Path
 import numpy as np
 import pytest
 from jointfmu_tools.studies.published import calibration
-from jointfmu_tools.studies.published.calibration import calibrate
+from jointfmu_tools.studies.published.calibration import fit_calibrated_parameters
 from jointfmu_tools.studies.published.computed import load_published_numbers
 from jointfmu_tools.studies.published.reference import (
     CALIBRATION_TOLERANCE,
-    ROLES,
+    POINT_ROLES,
     ROLES_WITH_TRIVIAL_GUESS,
     UNTESTED_ROLES,
-    Guess,
     PublishedPoint,
+    TrivialGuess,
     compute_trivial_guesses,
     read_points,
 )
 from jointfmu_tools.studies.published.validation import (
     compare_point,
     count_points,
-    format_summary,
-    format_table,
-    missed_points,
-    validate,
+    format_validation_summary,
+    format_validation_table,
+    select_missed_points,
+    validate_published_numbers,
 )
 
 from jointfmu.joints import KINDS
@@ -36,21 +36,21 @@ REPRODUCED = 1e-6
 """Relative tolerance of a repeated fit [1]: it stops at residuals of 1e-8, and its least determined parameter
 changes about ten times as much."""
 
-PAPERS = [paper for kind in KINDS.values() for paper in load_published_numbers(kind).papers]
+PAPERS = [paper for kind in KINDS.values() for paper in load_published_numbers(kind).paper_names]
 OBSERVABLES = {
     q: f for kind in KINDS.values() for q, f in load_published_numbers(kind).observable_functions.items()
 }
 FITS = {
-    name: (load_published_numbers(kind).papers[0], load_published_numbers(kind).calibration)
+    name: (load_published_numbers(kind).paper_names[0], load_published_numbers(kind).calibration_fits)
     for name, kind in KINDS.items()
-    if load_published_numbers(kind).calibration
+    if load_published_numbers(kind).calibration_fits
 }
 ALL = [point for paper in PAPERS for point in read_points(paper)]
 
 
 @pytest.fixture(scope="module")
 def rows():
-    return validate()
+    return validate_published_numbers()
 
 
 # The comparison
@@ -58,20 +58,20 @@ def rows():
 
 @pytest.mark.parametrize("point", ALL, ids=[f"{p.paper}-{p.id}" for p in ALL])
 def test_published_point_is_met(rows, point):
-    row = next(r for r in rows if r.point == point)
-    assert row.has_passed, (row.point.id, row.computed_value, row.point.value, row.error)
+    row = next(r for r in rows if r.published_point == point)
+    assert row.has_passed, (row.published_point.id, row.computed_value, row.published_point.value, row.error)
 
 
 def test_every_point_is_compared_once(rows):
-    assert [row.point for row in rows] == ALL
+    assert [row.published_point for row in rows] == ALL
     assert len({(p.paper, p.id) for p in ALL}) == len(ALL)
-    assert missed_points(rows) == []
+    assert select_missed_points(rows) == []
     assert {p.paper for p in ALL} == set(PAPERS)
 
 
 def test_points_say_where_they_stand():
     for p in ALL:
-        assert p.role in ROLES
+        assert p.role in POINT_ROLES
         assert p.quantity in OBSERVABLES
         assert any(word in p.place for word in ("section", "Eq", "Table", "conclusion", "yield")), p.id
         assert p.absolute or p.unit != "%", p.id  # a change in per cent is off by percentage points
@@ -125,8 +125,8 @@ def test_values_are_those_of_the_papers():
 def test_table_3_is_divided_by_the_experiment(rows):
     """Errors of frequencies are those of Zhao 2018, Table 3: 100 (predicted/measured - 1)."""
     for row in rows:
-        if row.point.quantity == "frequency_error":
-            given = row.point.where
+        if row.published_point.quantity == "frequency_error":
+            given = row.published_point.where
             assert row.computed_value == pytest.approx(
                 100 * (given["predicted"] / given["measured"] - 1), rel=1e-12
             )
@@ -172,19 +172,19 @@ def test_compare(changes, computed, error, passed):
     assert row.error == pytest.approx(error, rel=1e-9, nan_ok=True)  # differences of three digits
     assert row.has_passed is passed
     assert row.to_json()["verdict"] == ("pass" if passed else "miss")
-    assert missed_points([row]) == ([] if passed else [row])
+    assert select_missed_points([row]) == ([] if passed else [row])
 
 
-@pytest.mark.parametrize("role", [role for role in ROLES if role != "claim"])
+@pytest.mark.parametrize("role", [role for role in POINT_ROLES if role != "claim"])
 def test_what_a_miss_means(role):
     """A miss counts, unless the point was met by calibration or by construction."""
     row = compare_point(point(role=role), -300.0)
     assert not row.has_passed
-    assert missed_points([row]) == ([] if role in UNTESTED_ROLES else [row])
+    assert select_missed_points([row]) == ([] if role in UNTESTED_ROLES else [row])
     assert row.verdict == ("no test, moved" if role in UNTESTED_ROLES else "miss")
     met = compare_point(point(role=role), -200.0)
     assert met.verdict == ("no test" if role in UNTESTED_ROLES else "pass")
-    assert count_points([row]).missed == [r.point.id for r in missed_points([row])]
+    assert count_points([row]).missed == [r.published_point.id for r in select_missed_points([row])]
 
 
 def test_who_is_nearer():
@@ -193,7 +193,7 @@ def test_who_is_nearer():
     assert compare_point(point(), -198.0, -201.5).nearer_estimate == "guess"
     assert compare_point(point(), -199.0, -201.0).nearer_estimate == "guess"  # no better than the guess
     row = compare_point(point(absolute=True), -199.0, -201.5)
-    assert (row.guess, row.guess_error) == (-201.5, -1.5)
+    assert (row.trivial_guess, row.guess_error) == (-201.5, -1.5)
     assert row.to_json()["guess"] == -201.5
 
 
@@ -201,9 +201,12 @@ def test_who_is_nearer():
     ("changes", "said"),
     [
         ({"role": "validation"}, "role = 'validation', allowed are calibration, circular, contradiction"),
-        ({"role": "claim"}, "value = -200.0, a claim is true or false"),
-        ({"value": True}, "value = True, a claim is true or false"),
-        ({"role": "constant", "guess": Guess(rule="constant", points=["a"])}, "interpolation, prediction"),
+        ({"role": "claim"}, "value = -200.0; expected true or false for role"),
+        ({"value": True}, "value = True; expected true or false for role"),
+        (
+            {"role": "constant", "guess": TrivialGuess(rule="constant", points=["a"])},
+            "interpolation, prediction",
+        ),
     ],
 )
 def test_a_point_that_contradicts_itself_is_refused(changes, said):
@@ -237,8 +240,8 @@ A, B, C = (
     ],
 )
 def test_guess(how, guess, text):
-    asked = point(value=1.0, where={"torque": 9.0}, guess=Guess(**how))
-    other = point(id="y", value=99.0, guess=Guess(rule="constant", points=["b"]))
+    asked = point(value=1.0, where={"torque": 9.0}, guess=TrivialGuess(**how))
+    other = point(id="y", value=99.0, guess=TrivialGuess(rule="constant", points=["b"]))
     assert compute_trivial_guesses([A, B, C, other, asked])["x"] == pytest.approx(guess, rel=1e-12)
     assert text in str(asked.guess)
 
@@ -247,26 +250,29 @@ def test_guess(how, guess, text):
     ("how", "said"),
     [
         ({"rule": "mean", "points": ["a"]}, "rule = 'mean', allowed are constant, power law"),
-        ({"rule": "constant", "points": ["a", "b"]}, "2 points, a constant takes 1"),
-        ({"rule": "power law", "points": ["a", "b"]}, "over = '', a power law takes a name"),
-        ({"rule": "constant", "points": ["a"], "over": "torque"}, "over = 'torque', a constant takes none"),
+        ({"rule": "constant", "points": ["a", "b"]}, "2 points, expected 1 for the rule constant"),
+        ({"rule": "power law", "points": ["a", "b"]}, "over = '', expected a name for the rule power law"),
+        (
+            {"rule": "constant", "points": ["a"], "over": "torque"},
+            "over = 'torque', expected none for the rule constant",
+        ),
     ],
 )
 def test_a_guess_that_is_none_is_refused(how, said):
     with pytest.raises(ValueError, match=said):
-        Guess(**how)
+        TrivialGuess(**how)
 
 
 @pytest.mark.parametrize("name", ["x", "z", "missing"])
 def test_a_guess_from_what_was_not_calibrated_is_refused(name):
     """A guess from the point itself, from a prediction without guess, or from no point is refused."""
-    asked = point(guess=Guess(rule="constant", points=[name]))
+    asked = point(guess=TrivialGuess(rule="constant", points=[name]))
     with pytest.raises(ValueError, match=f"x: guess from '{name}', allowed are calibration points"):
         compute_trivial_guesses([point(id="z"), asked])
 
 
 def test_guesses_are_those_by_hand(rows):
-    found = {row.point.id: row.guess for row in rows if row.guess is not None}
+    found = {row.published_point.id: row.trivial_guess for row in rows if row.trivial_guess is not None}
     power = np.log(5294.0 / 2524.92) / np.log(10.0)
     top = {T: 1940.49 * (T / 5.0) ** power for T in (1, 3)}
     expected = {f"K_TS.max.{T}": value for T, value in top.items()}
@@ -301,10 +307,10 @@ def test_a_wrong_computed_value_is_a_miss():
 def test_missed_points_are_listed(rows):
     wrong = [p.id for p in ALL if p.quantity == "psi"]
     assert "psi.1.5" in wrong
-    found = [compare_point(r.point, 2.0) if r.point.id in wrong else r for r in rows]
-    assert [row.point.id for row in missed_points(found)] == wrong
-    assert format_summary(found).endswith("missed: " + ", ".join(wrong))
-    lines = format_table(found).splitlines()
+    found = [compare_point(r.published_point, 2.0) if r.published_point.id in wrong else r for r in rows]
+    assert [row.published_point.id for row in select_missed_points(found)] == wrong
+    assert format_validation_summary(found).endswith("missed: " + ", ".join(wrong))
+    lines = format_validation_table(found).splitlines()
     assert len(lines) == len(ALL) + 1
     assert [line.split()[1] for line in lines if line.endswith("MISS")] == wrong
 
@@ -312,14 +318,15 @@ def test_missed_points_are_listed(rows):
 def test_counts(rows):
     found = count_points(rows)
     assert sum(found.roles.values()) == len(ALL)
-    assert found.roles == {role: sum(p.role == role for p in ALL) for role in ROLES} == found.met
+    assert found.roles == {role: sum(p.role == role for p in ALL) for role in POINT_ROLES} == found.met
     assert found.numbers == found.printed + found.derived == len(ALL) - found.roles["claim"]
     assert found.printed == len(PRINTED)
     assert found.guessed == {
         role: n if role in ROLES_WITH_TRIVIAL_GUESS else 0 for role, n in found.roles.items()
     }
     assert found.nearer == {
-        role: sum(r.nearer_estimate == "law" and r.point.role == role for r in rows) for role in ROLES
+        role: sum(r.nearer_estimate == "law" and r.published_point.role == role for r in rows)
+        for role in POINT_ROLES
     }
     assert len(found.contradictions) == 3
     assert found.missed == []
@@ -330,13 +337,13 @@ def test_the_guide_explains_every_role():
     section = (
         guide.read_text(encoding="utf-8").partition("## What a published number shows")[2].partition("##")[0]
     )
-    assert set(re.findall(r"^\| `([a-z-]+)` \|", section, flags=re.MULTILINE)) == set(ROLES)
+    assert set(re.findall(r"^\| `([a-z-]+)` \|", section, flags=re.MULTILINE)) == set(POINT_ROLES)
 
 
 def test_summary(rows):
     found = count_points(rows)
     roles = ", ".join(f"{n} {role}" for role, n in found.roles.items() if role != "claim")
-    assert format_summary(rows) == (
+    assert format_validation_summary(rows) == (
         f"{found.numbers} numbers, {found.printed} printed in the papers and "
         f"{found.derived} computed from printed ones: {roles}; {found.roles['claim']} claims; "
         f"nearer than the trivial guess: {found.nearer['interpolation']} of 5 (interpolation), "
@@ -344,18 +351,18 @@ def test_summary(rows):
         "(prediction); "
         f"text against its own equations: {', '.join(found.contradictions)}; missed: none"
     )
-    off = [replace(row, has_passed=False) if row.point.id == "p_max.9kN" else row for row in rows]
+    off = [replace(row, has_passed=False) if row.published_point.id == "p_max.9kN" else row for row in rows]
     assert (
         f"{found.roles['calibration']} calibration ({found.roles['calibration'] - 1} met)"
-        in format_summary(off)
+        in format_validation_summary(off)
     )
 
 
 def test_another_parameter_set_is_compared():
     """The given parameter sets are used, and defaults for the others."""
     soft = load_default("harmonic_drive").with_values({"K_FTS0": 1e4}, "user", "test")
-    found = validate({"harmonic_drive": soft})
-    names = {row.point.id for row in found if not row.has_passed}
+    found = validate_published_numbers({"harmonic_drive": soft})
+    names = {row.published_point.id for row in found if not row.has_passed}
     assert "K_WTS.measured.5" in names
     assert all(name.startswith("K_WTS") for name in names)
 
@@ -377,7 +384,7 @@ def test_fits_name_calibration_points_only():
 def test_as_many_points_as_unknowns():
     for _, fits in FITS.values():
         for fit in fits:
-            assert len(fit.unknowns) == len(fit.point_ids)
+            assert len(fit.start_value_by_parameter) == len(fit.point_ids)
 
 
 @pytest.mark.parametrize(
@@ -392,13 +399,13 @@ def test_part_of_every_curve_is_not_fitted(curve, most):
 
 @pytest.mark.parametrize("joint", FITS)
 def test_fitted_values_are_marked_in_the_code_and_in_the_file(joint):
-    unknowns = {name for fit in FITS[joint][1] for name in fit.unknowns}
+    unknowns = {name for fit in FITS[joint][1] for name in fit.start_value_by_parameter}
     file = load_default(joint)
     assert unknowns == {name for name, kind in file.origins.items() if kind == "calibration"}
     declared = {name for name, item in flatten_fields(type(file.values)) if item.metadata.get("calibration")}
     assert declared <= unknowns
     for fit in FITS[joint][1]:
-        for name in fit.unknowns:
+        for name in fit.start_value_by_parameter:
             assert all(used in file.sources[name] for used in fit.point_ids)
 
 
@@ -408,7 +415,7 @@ def test_calibration_reproduces_the_committed_values(joint):
     """Calibration gives the committed values from other values in the file and other start values."""
     committed = load_default(joint)
     paper, fits = FITS[joint]
-    unknowns = [name for fit in fits for name in fit.unknowns]
+    unknowns = [name for fit in fits for name in fit.start_value_by_parameter]
     values = flatten_parameters(committed.values)
     factors = {"rated_pressure": 1.02, "radial_deformation": 1.005}
     start = committed.with_values(
@@ -416,10 +423,12 @@ def test_calibration_reproduces_the_committed_values(joint):
     )
     points, again = {p.id: p for p in read_points(paper)}, start
     for fit in fits:
-        first = {name: value * factors.get(name, 1.05) for name, value in fit.unknowns.items()}
+        first = {
+            name: value * factors.get(name, 1.05) for name, value in fit.start_value_by_parameter.items()
+        }
         wanted = [points[name] for name in fit.point_ids]
         assert {p.role for p in wanted} == {"calibration"}
-        again = calibration.fit_unknowns(again, replace(fit, unknowns=first), wanted)
+        again = calibration.fit_unknowns(again, replace(fit, start_value_by_parameter=first), wanted)
     for name in unknowns:
         assert flatten_parameters(again.values)[name] == pytest.approx(values[name], rel=REPRODUCED), name
         assert again.origins[name] == "calibration"
@@ -430,7 +439,7 @@ def test_calibration_reproduces_the_committed_values(joint):
 
 def test_a_joint_without_points_is_refused():
     with pytest.raises(ValueError, match="gear_contact") as error:
-        calibrate(load_default("gear_contact"))
+        fit_calibrated_parameters(load_default("gear_contact"))
     assert "harmonic_drive, bolted_joint" in str(error.value)
 
 
@@ -444,7 +453,12 @@ def test_a_fit_that_cannot_be_met_is_reported():
         calibration.fit_unknowns(load_default("bolted_joint"), fit, bad)
 
 
-UNKNOWNS = [(joint, name) for joint, (_, fits) in FITS.items() for fit in fits for name in fit.unknowns]
+UNKNOWNS = [
+    (joint, name)
+    for joint, (_, fits) in FITS.items()
+    for fit in fits
+    for name in fit.start_value_by_parameter
+]
 
 
 @pytest.mark.parametrize(("joint", "name"), UNKNOWNS)
@@ -455,10 +469,10 @@ def test_computed_values_follow_the_calibrated_ones(rows, joint, name):
     paper = FITS[joint][0]
     moved = set()
     for row in rows:
-        if row.point.paper == paper:
-            computed = OBSERVABLES[row.point.quantity](changed.values, **row.point.where)
+        if row.published_point.paper == paper:
+            computed = OBSERVABLES[row.published_point.quantity](changed.values, **row.published_point.where)
             if computed != pytest.approx(row.computed_value, rel=1e-6):  # far above round-off, far below 1e-3
-                moved.add(row.point.role)
+                moved.add(row.published_point.role)
     assert "calibration" in moved
     assert (
         joint == "bolted_joint" or moved & set(ROLES_WITH_TRIVIAL_GUESS) or "circular" in moved
@@ -468,8 +482,9 @@ def test_computed_values_follow_the_calibrated_ones(rows, joint, name):
 def test_validation_reads_nothing_but_the_parameter_set(rows):
     """Published values have no influence on computed values."""
     for row in rows:
-        values = load_default(row.point.joint).values
-        computed = OBSERVABLES[row.point.quantity](values, **row.point.where)
+        values = load_default(row.published_point.joint).values
+        computed = OBSERVABLES[row.published_point.quantity](values, **row.published_point.where)
         assert computed == row.computed_value
-        if not isinstance(row.point.value, bool):
-            assert not compare_point(replace(row.point, value=0.1 * row.point.value), computed).has_passed
+        if not isinstance(row.published_point.value, bool):
+            tenth = replace(row.published_point, value=0.1 * row.published_point.value)
+            assert not compare_point(tenth, computed).has_passed

@@ -44,7 +44,7 @@ def test_text_and_membership(ends, text, inside, outside):
 @pytest.mark.parametrize(("ends", "names"), [({"gt": 0.0, "ge": 1.0}, "gt and ge = 0.0, 1.0"),
                                              ({"lt": 2.0, "le": 2.0}, "lt and le = 2.0, 2.0")])  # fmt: skip
 def test_an_end_is_given_once(ends, names):
-    with pytest.raises(ValueError, match=f"^{names} are the same bound; state only one$"):
+    with pytest.raises(ValueError, match=f"^{names} are the same end; state only one$"):
         Interval.from_bounds(**ends)
 
 

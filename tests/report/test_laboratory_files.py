@@ -187,7 +187,7 @@ def check_shown(shown: Browser, text: str, folder: Path) -> None:
     for v in model.outputs:
         near = pytest.approx(expected[v.name], rel=COMPILED, abs=ROUND_OFF * v.nominal)
         assert outputs[v.name] == near, v.name
-    module = next(m for m in EVERY if (m.model.name, m.parameter_files[0].law) == (model.name, file.law))
+    module = next(m for m in EVERY if (m.fmu_model.name, m.parameter_files[0].law) == (model.name, file.law))
     instance = Instance(module, module.compile_module(), file)
     assert instance.start(exposed | inputs)
     assert instance.get() == outputs
@@ -217,17 +217,17 @@ def test_a_shipped_file_is_shown_whatever_was_shown_before(shown: Browser, stem:
 
 @needed
 @pytest.mark.parametrize("seed", range(3))
-@pytest.mark.parametrize("module", EVERY, ids=lambda m: f"{m.model.name}, {m.parameter_files[0].law}")
+@pytest.mark.parametrize("module", EVERY, ids=lambda m: f"{m.fmu_model.name}, {m.parameter_files[0].law}")
 def test_a_file_with_other_numbers_is_shown(
     shown: Browser, module: PageModule, seed: int, tmp_path: Path
 ) -> None:
     """Files with all numbers that the page can change, start values of inputs included."""
     rng = np.random.default_rng(seed)
-    choose(shown, module.model.name)
+    choose(shown, module.fmu_model.name)
     drawn = random_values(module, rng, False)
     drawn |= {name: module.parameter_files[0].values_by_name[name] for name in BOUND & drawn.keys()}
     changed = module.parameter_files[0].with_values(drawn, "user", "at random")
-    inputs = CASES[module.model.name].numbers.state if seed else {}
+    inputs = CASES[module.fmu_model.name].numbers.state if seed else {}
     check_shown(shown, format_parameter_file(replace(changed, name=f"other {seed}", inputs=inputs)), tmp_path)
 
 
@@ -430,18 +430,18 @@ def test_an_opened_file_is_reset_and_saved(shown: Browser, drawings: dict[str, s
     assert moved.roughness == {}  # the height stands in their place
 
 
-@pytest.mark.parametrize("module", EVERY, ids=lambda m: f"{m.model.name}, {m.parameter_files[0].law}")
+@pytest.mark.parametrize("module", EVERY, ids=lambda m: f"{m.fmu_model.name}, {m.parameter_files[0].law}")
 def test_a_number_beside_the_code_enters_the_data_as_itself_alone(module: PageModule) -> None:
     """The page may set a number that is not compiled: it changes its own value in the data only."""
     file = module.parameter_files[0]
     if "friction_1" in file.values_by_name:  # its upper limit is friction_coulomb
         file = file.with_values({"friction_coulomb": 0.1}, "user", "x")
-    given = split_parameters(module.model, file)
-    for name in given.data_values.keys() & file.values_by_name.keys():
+    given = split_parameters(module.fmu_model, file)
+    for name in given.data_struct_values.keys() & file.values_by_name.keys():
         value = 0.9 * file.values_by_name[name] or 1e-6
-        other = split_parameters(module.model, file.with_values({name: value}, "user", "x"))
-        assert other.data_values == given.data_values | {name: value}
-        assert other.code_values == given.code_values
-        assert {k: t.rows.tolist() for k, t in other.tables.items()} == {
-            k: t.rows.tolist() for k, t in given.tables.items()
+        other = split_parameters(module.fmu_model, file.with_values({name: value}, "user", "x"))
+        assert other.data_struct_values == given.data_struct_values | {name: value}
+        assert other.code_generation_values == given.code_generation_values
+        assert {k: t.table_rows.tolist() for k, t in other.data_tables.items()} == {
+            k: t.table_rows.tolist() for k, t in given.data_tables.items()
         }

@@ -73,10 +73,10 @@ def test_the_page_carries_the_licences_of_what_is_linked_into_its_modules(page: 
 
 def test_all_models_and_parameter_files_are_there() -> None:
     every = list_modules()
-    assert {m.model.name for m in every} == set(MODELS)
+    assert {m.fmu_model.name for m in every} == set(MODELS)
     for kind in KINDS.values():
         stems = {path.stem for path in kind.default_file().parent.glob("*.toml")}
-        names = {file.name for m in every if m.model.joint == kind.name for file in m.parameter_files}
+        names = {file.name for m in every if m.fmu_model.joint == kind.name for file in m.parameter_files}
         shipped = {load_parameter_file(kind.default_file().with_name(f"{stem}.toml")).name for stem in stems}
         assert names == shipped
 
@@ -245,8 +245,8 @@ def test_a_chart_zooms_by_pointer_and_keys(shown: Browser) -> None:
 @needed
 def test_parameters_come_out_as_a_file_that_build_takes(shown: Browser, tmp_path: Path) -> None:
     for module in list_modules():
-        name, first = module.model.name, module.parameter_files[0]
-        index = [f.name for m in list_modules() if m.model.name == name for f in m.parameter_files].index(
+        name, first = module.fmu_model.name, module.parameter_files[0]
+        index = [f.name for m in list_modules() if m.fmu_model.name == name for f in m.parameter_files].index(
             first.name
         )
         choose(shown, name, index)
@@ -263,12 +263,12 @@ def test_parameters_come_out_as_a_file_that_build_takes(shown: Browser, tmp_path
         path.write_text(text, encoding="utf-8")
         file = load_parameter_file(path, first.joint)
         assert file.law == first.law
-        for key in module.model.parameter_fields():
+        for key in module.fmu_model.parameter_fields():
             assert file.values_by_name[key] == values[key], key
-        assert {v.name: file.start_value(v.name) for v in module.model.inputs} == {
-            v.name: values[v.name] for v in module.model.inputs
+        assert {v.name: file.start_value(v.name) for v in module.fmu_model.inputs} == {
+            v.name: values[v.name] for v in module.fmu_model.inputs
         }
-        others = set(file.values_by_name) - set(module.model.parameter_fields())
+        others = set(file.values_by_name) - set(module.fmu_model.parameter_fields())
         assert {key: file.values_by_name[key] for key in others} == {
             key: first.values_by_name[key] for key in others
         }

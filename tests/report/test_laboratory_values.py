@@ -25,7 +25,7 @@ needed = needs("Chromium")
 SETS, REFUSED, STEPS = 22, 2, 4
 """Numbers of accepted parameter sets (a few of them may have no table), of refused ones, and of steps."""
 ACCEPTED = 20
-EVERY = {f"{m.model.name}, {m.parameter_files[0].law}": m for m in list_modules()}
+EVERY = {f"{m.fmu_model.name}, {m.parameter_files[0].law}": m for m in list_modules()}
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ def cases(module: PageModule, fmu: Fmu) -> list[Case]:
     values += [refused_values(module, rng) for _ in range(REFUSED)]
     found = []
     for i, each in enumerate(values):
-        path = [module_inputs(module, given) for given in random_inputs(module.model.name, STEPS, seed=i)]
+        path = [module_inputs(module, given) for given in random_inputs(module.fmu_model.name, STEPS, seed=i)]
         found.append(native(fmu, each, path))
     assert sum(not case.refusal for case in found[:SETS]) >= ACCEPTED
     assert all(case.refusal for case in found[SETS:])
@@ -72,7 +72,7 @@ def cases(module: PageModule, fmu: Fmu) -> list[Case]:
 
 
 def module_inputs(module: PageModule, given: dict[str, float]) -> dict[str, float]:
-    return dict.fromkeys((v.name for v in module.model.inputs), 0.0) | given
+    return dict.fromkeys((v.name for v in module.fmu_model.inputs), 0.0) | given
 
 
 def native(fmu: Fmu, values: dict[str, Any], path: list[dict[str, float]]) -> Case:
@@ -81,7 +81,7 @@ def native(fmu: Fmu, values: dict[str, Any], path: list[dict[str, float]]) -> Ca
     try:
         fmu.start(values)
     except Exception:  # fmpy raises its own
-        errors = [m.text for m in fmu.messages[seen:] if m.status == 3]
+        errors = [m.message_text for m in fmu.messages[seen:] if m.fmi_status == 3]
         return Case(values, path, [], errors[0])
     outputs = []
     for inputs in path:
@@ -120,7 +120,7 @@ def test_wasmtime_gives_the_numbers_and_refusals(
 
 
 def test_wasmtime_gives_the_derivatives(module: PageModule, fmu: Fmu, instance: Instance) -> None:
-    (given,) = random_inputs(module.model.name, 1, seed=5)
+    (given,) = random_inputs(module.fmu_model.name, 1, seed=5)
     inputs = module_inputs(module, given)
     fmu.reset()
     fmu.start(inputs)
@@ -162,7 +162,7 @@ _RUN = """(async () => {{
 def test_chromium_gives_the_numbers_and_refusals(module: PageModule, cases: list[Case], shown: Any) -> None:
     """A refusal has the text of the package, in the units of the sliders."""
     asked = json.dumps([{"values": c.values, "path": c.path, "refusal": c.refusal} for c in cases])
-    name, law = json.dumps(module.model.name), json.dumps(module.parameter_files[0].law)
+    name, law = json.dumps(module.fmu_model.name), json.dumps(module.parameter_files[0].law)
     for case, found in zip(cases, shown.run(_RUN.format(cases=asked, name=name, law=law)), strict=True):
         if case.refusal:
             said, meant = found

@@ -12,7 +12,7 @@ from clients import needs
 from jointfmu_fmu_src.native.page import make_documentation
 from jointfmu_fmu_src.partners import PARTNERS
 from jointfmu_fmu_src.partners.models import load_partner_parameters
-from jointfmu_fmu_src.templates import load_template
+from jointfmu_fmu_src.templates import load_jinja_template
 from jointfmu_tools.pages.laboratory.assemble import write_laboratory
 from jointfmu_tools.pages.report import figure
 from jointfmu_tools.pages.report.joint import write_joint_report
@@ -78,8 +78,8 @@ def test_the_template_of_all_reports_forbids_the_network() -> None:
     joint does."""
     folder = Path(figure.__file__).parent
     assert '{% extends "base.html" %}' in (folder / "page.html").read_text(encoding="utf-8")
-    script = figure.page_script("tabs.js")
-    check(load_template(folder / "base.html").render(style="", script=script))
+    script = figure.read_page_script("tabs.js")
+    check(load_jinja_template(folder / "base.html").render(style="", script=script))
 
 
 @pytest.mark.slow

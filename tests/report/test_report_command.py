@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import refused_line
-from jointfmu_fmu_src.native.page import find_ramp_panels, make_documentation
-from jointfmu_fmu_src.proof.experiments import compute_experiments
+from jointfmu_fmu_src.native.page import find_load_ramp_panels, make_documentation
+from jointfmu_fmu_src.proof.experiments import compute_reference_experiments
 from jointfmu_tools import cli
 from jointfmu_tools.common.pressure import judge_joint_stiffness
 from jointfmu_tools.pages.report.joint import VALIDITY_HEADINGS, write_joint_report
@@ -78,7 +78,7 @@ def test_curves_are_those_of_the_spring(name: str, tmp_path: Path) -> None:
     rest = {v.name: file.start_value(v.name) for v in model.inputs}
     variables = {v.name: v for v in (*model.inputs, *model.outputs)}
     ramp = model.with_load_range(spring, rest).ramp.sample_inputs(101)
-    for panel, (over, names) in zip(drawn, find_ramp_panels(model), strict=True):
+    for panel, (over, names) in zip(drawn, find_load_ramp_panels(model), strict=True):
         shown = panel["y"].rpartition("[")[2].rstrip("]").replace("µ", "u").replace(" ", ".")
         factor = units.conversion_factor(variables[names[0]].unit, shown)
         for series in panel["series"]:
@@ -142,7 +142,7 @@ def test_loops_lose_what_the_joint_says_it_lost(name: str) -> None:
     own = {n: v for n, v in model.load_cycle.variable_values.items() if n in model.parameter_fields()}
     file = load_default(model.joint).with_values(own, "user", "with memory")
     loops = LoadHistory(model, file).compute_loops()
-    for row in loops.compute_loop_results():
+    for row in loops.compute_quantities_of_loops():
         # trapezoids over 80 points of a cycle, a branch of which is about a parabola: 1/40^2 of it
         assert row["loss"] == pytest.approx(row["E_loss"], rel=2e-2)
         assert row["loss"] > 0.0
@@ -173,10 +173,12 @@ def test_the_ramp_reaches_where_the_joint_is_loaded(
     stem = {"GearMesh": "phi1", "HarmonicDriveSpring": "phi2"}.get(name, "tau")
     said = f"<code>{stem}</code> from 0 to {course.model.ramp.end_value:.6g} "
     assert said in make_documentation(model, file)["index.html"].decode()
-    ramp = next(one for one in compute_experiments(model, file) if one.name == "load ramp")
-    assert ramp.stimulus.levels[-1] == pytest.approx(course.model.ramp.end_value, rel=1e-8)
-    assert ramp.results.columns[stiffness][-1] == pytest.approx(columns[stiffness][-1], rel=1e-6)
-    assert np.all(ramp.results.columns[stiffness][1:] > 0.0)
+    ramp = next(
+        one for one in compute_reference_experiments(model, file) if one.experiment_name == "load ramp"
+    )
+    assert ramp.input_stimulus.input_levels[-1] == pytest.approx(course.model.ramp.end_value, rel=1e-8)
+    assert ramp.reference_results.columns[stiffness][-1] == pytest.approx(columns[stiffness][-1], rel=1e-6)
+    assert np.all(ramp.reference_results.columns[stiffness][1:] > 0.0)
 
 
 def test_what_is_said_of_the_end_of_the_law_is_so_there() -> None:
@@ -186,11 +188,13 @@ def test_what_is_said_of_the_end_of_the_law_is_so_there() -> None:
         if course.law_limit:
             value, text = course.law_limit
             inputs = {**course.start_values, model.ramp.input_name: value}
-            outputs = model.evaluate(course.spring, inputs)
-            assert text in model.find_warnings(course.spring, {**inputs, **outputs}).values()
+            outputs = model.evaluate(course.tabulated_joint, inputs)
+            assert text in model.find_warnings(course.tabulated_joint, {**inputs, **outputs}).values()
             below = {**course.start_values, model.ramp.input_name: 0.99 * value}
             assert text.split("=")[0] not in "".join(
-                model.find_warnings(course.spring, {**below, **model.evaluate(course.spring, below)}).values()
+                model.find_warnings(
+                    course.tabulated_joint, {**below, **model.evaluate(course.tabulated_joint, below)}
+                ).values()
             )
 
 

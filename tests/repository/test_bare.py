@@ -29,8 +29,8 @@ EXTRAS = (
 )
 PROGRAM = f"import sys; sys.modules.update(dict.fromkeys({EXTRAS}));"
 FEW = (
-    "from jointfmu_tools.pages.report import load_history; load_history._RAMP_POINTS = 11;"
-    "load_history._LOAD_CYCLE = load_history.CyclicPath(points=8);"
+    "from jointfmu_tools.pages.report import load_history; load_history._RAMP_POINT_COUNT = 11;"
+    "load_history._LOAD_CYCLE = load_history.CyclicInputPath(points_per_cycle=8);"
 )
 """Options for few points of ramp and loops on a page, to save time."""
 MAIN = "from jointfmu_tools.cli import main; sys.exit(main(sys.argv[1:]))"

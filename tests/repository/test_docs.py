@@ -22,7 +22,7 @@ from urllib.parse import unquote, urlsplit
 import pytest
 from clients import CHROMIUM_OPTIONS, chromium, needs, unusable
 from conftest import here_alone
-from jointfmu_fmu_src.joint_parts import FmuParts
+from jointfmu_fmu_src.joint_parts import FmuBuildData
 from jointfmu_tools import cli
 from jointfmu_tools.cli.parser import build_parser
 from jointfmu_tools.common.joint_parts import TOOL_NAMES
@@ -119,7 +119,7 @@ def test_pictures_are_small_and_used() -> None:
                 assert image.width <= 1600
 
 
-def test_the_house_is_drawn_as_it_is_built() -> None:
+def test_the_picture_of_the_import_layers_is_current() -> None:
     """The committed picture has the words and colours of the generator (words are comments in the file)."""
     spec = spec_from_file_location("figures", DOCS / "figures.py")
     assert spec is not None
@@ -199,7 +199,7 @@ def test_every_part_of_a_joint_is_explained() -> None:
     assert asked == {*TOOL_NAMES}
     for tool in TOOL_NAMES:
         assert re.search(rf"^\| `{tool}` \| `[A-Z_a-z]+`", ARCHITECTURE, re.M), tool
-    for field in fields(FmuParts):
+    for field in fields(FmuBuildData):
         assert re.search(rf"^\| `{field.name}` \| ", ARCHITECTURE, re.M), field.name
 
 
@@ -325,7 +325,9 @@ def test_the_reference_has_every_public_name(site: Path) -> None:
     for name in (*(f"jointfmu{n}" for n in jointfmu.__all__), "jointbuild", "drivejointwind_up"):
         assert name.lower() in ids, name
     assert re.search(
-        r"<li><code>efficiency</code>: efficiency at rated torque and 2000 rev/min \[1\]</li>", text
+        r"<li><code>efficiency</code>: efficiency at rated torque and 2000 rev/min \[1\], "
+        r"as in 0\.7 or 70%</li>",
+        text,
     )
     assert '"reference.html#drivejointwind_up"' in (site / "search.json").read_text("utf-8")
 

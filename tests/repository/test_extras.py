@@ -12,7 +12,7 @@ import coarse
 import numpy as np
 import pytest
 from clients import needs
-from jointfmu_tools.inputs.fields.nodal_result import ContactField, csv_text
+from jointfmu_tools.inputs.fields.nodal_result import ContactPressureField, format_field_csv
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
@@ -116,8 +116,8 @@ def write_inputs(folder: Path) -> None:
     with coarse.contact_cells(4):
         shape = get_bolted_frame(joint).pressure_distribution()
     p = shape.preload_pressure_ratio * 9e3 * joint.n_bolts / joint.A_0
-    nodes = ContactField(shape.area_share * joint.A_0, shape.position, p)
-    (folder / "field.csv").write_text(csv_text(nodes), encoding="utf-8")
+    nodes = ContactPressureField(shape.area_share * joint.A_0, shape.position, p)
+    (folder / "field.csv").write_text(format_field_csv(nodes), encoding="utf-8")
 
 
 def test_all_extras_are_looked_at():

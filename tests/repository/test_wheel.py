@@ -67,7 +67,7 @@ def built_wheel(out: Path) -> Path:
     every = compile_ahead.list_code_structures
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(compile_ahead, "list_code_structures", lambda model: islice(every(model), 1))
-        compile_ahead.compile_ahead([NAME], tree / "fmu_src" / "native" / "parts")
+        compile_ahead.compile_models_ahead([NAME], tree / "fmu_src" / "native" / "parts")
     options = ("--no-deps", "--no-index", "--no-build-isolation", "--quiet", "--wheel-dir", str(out))
     subprocess.run([sys.executable, "-m", "pip", "wheel", *options, str(tree)], check=True)
     (wheel,) = out.glob("*.whl")

@@ -264,17 +264,17 @@ CLIENTS = {
     ),
     "Wine": Client(
         run_wine,
-        "binaries for Windows give the bits of Linux, and behave alike",
+        "binaries for Windows give the results of Linux bit for bit, and behave as on Linux",
         "`wine wine64`",
     ),
     "QEMU": Client(
         emulate_program,
-        "sources compiled for aarch64 give the bits of x86_64",
+        "sources compiled for aarch64 give the results of x86_64 bit for bit",
         f"{LINUX_WHEEL}, or `qemu-user`",
     ),
     "C library of aarch64": Client(
         lambda: run(qemu(), "-L", SYSROOT, SYSROOT / "lib" / "ld-linux-aarch64.so.1", "--version"),
-        "binaries for aarch64 load, give the bits of x86_64, and behave alike",
+        "binaries for aarch64 load, give the results of x86_64 bit for bit, and behave as on x86_64",
         "`libc6-arm64-cross`",
     ),
     "gcc": Client(
@@ -304,12 +304,12 @@ CLIENTS = {
     ),
     "robosuite": Client(
         lambda: require(metadata.files("robosuite"), "the package lists no files"),
-        "five more robots of others with elastic joints",
+        "elastic joints in five robots that others have modelled",
         "`pip install robosuite`",
     ),
     "cyclonedx-bom": Client(
         script("import cyclonedx_py"),
-        "the list of what a release is made of",
+        "the list of the components of a release",
         "the extra `release`",
     ),
     "bash": Client(
@@ -319,12 +319,12 @@ CLIENTS = {
     ),
     "git and a checkout": Client(
         clone_checkout,
-        "all blocks of README, run in a clone",
+        "all commands and scripts of README run in a clone",
         "`git`, and `git clone`",
     ),
     "AVX2": Client(
         check_avx2,
-        "files and numbers are the same on an older processor",
+        "files and results are the same as on an older processor",
         "a processor with AVX2",
     ),
     "Linux": Client(
@@ -334,7 +334,7 @@ CLIENTS = {
     ),
     "Linux on x86_64": Client(
         check_linux_x86_64,
-        "times of native FMUs; the platforms that are compared with Linux on x86_64",
+        "times of native FMUs; other platforms compared with Linux on x86_64",
         "Linux on x86_64",
     ),
     "Linux or macOS": Client(

@@ -7,16 +7,16 @@ import time
 from pathlib import Path
 from typing import Any
 
-from jointfmu_tools.studies.uncertainty.runs import Execution, evaluate_runs
-from jointfmu_tools.studies.uncertainty.worker import FmuRamp, LoadRamp
+from jointfmu_tools.studies.uncertainty.runs import StudyExecution, evaluate_runs
+from jointfmu_tools.studies.uncertainty.worker import FmuRampEvaluator, LoadRamp
 
 
-class DiesAtFive(FmuRamp):
+class DiesAtFive(FmuRampEvaluator):
     """Evaluator that ends its process at run 5; a job has four runs, so three other runs are lost too."""
 
     runs_per_job = 4
 
-    def run(self, run_number, settings):
+    def execute_run(self, run_number, settings):
         """Outputs of one run, the same for all runs; run 5 ends the process instead."""
         if run_number == 5:
             os._exit(11)
@@ -27,8 +27,8 @@ class DiesAtFive(FmuRamp):
 def run_until_five_dies(fmu: Path, out: Path, **execution: Any) -> tuple[int, int, dict[int, str]]:
     """Number of rows and of new runs, and errors, of a study of 24 runs with this evaluator."""
     evaluator = DiesAtFive(fmu, LoadRamp("tau", 5.0, 1.0))
-    done = evaluate_runs(evaluator, [{"surface.D": 2.5}] * 24, ["K_WTS"], 2, Execution(out, **execution))
-    return done.accepted.size, done.new_run_count, dict(done.errors)
+    done = evaluate_runs(evaluator, [{"surface.D": 2.5}] * 24, ["K_WTS"], 2, StudyExecution(out, **execution))
+    return done.accepted_mask.size, done.new_run_count, dict(done.error_messages)
 
 
 def send_half_of_result(sent: Path) -> None:

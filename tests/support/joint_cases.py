@@ -10,7 +10,7 @@ import numpy as np
 from case import Case, Inputs, Joint
 
 from jointfmu.joints import KINDS, MODELS
-from jointfmu.mechanics.curve import MAX_ERROR
+from jointfmu.mechanics.curve import MAX_INTERPOLATION_ERROR
 from jointfmu.parameters import load_default
 from jointfmu.quantity import build_parameter_set as make
 from jointfmu.quantity import flatten_parameters
@@ -18,7 +18,7 @@ from jointfmu.quantity import flatten_parameters
 SAME = 1e-12
 """Relative tolerance [1] of the python flavour, which runs the package's code: round-off of sums in another
 order."""
-TABLE = 5.0 * MAX_ERROR
+TABLE = 5.0 * MAX_INTERPOLATION_ERROR
 """Relative tolerance [1] of an FMU against a law without table: five times the error of a table."""
 
 

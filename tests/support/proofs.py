@@ -9,10 +9,10 @@ from typing import Any
 import pytest
 from clients import needs
 from jointfmu_fmu_src.proof.standard import (
-    ATTRIBUTE_NAMESPACE,
+    LAYERED_STANDARD_NAME,
+    MANIFEST_ATTRIBUTE_NAMESPACE,
     MANIFEST_PATH,
-    REFERENCE_FOLDER,
-    STANDARD_NAME,
+    REFERENCE_FILE_FOLDER,
 )
 from jointfmu_tools import cli
 
@@ -35,7 +35,7 @@ def copy(source: Path, target: Path, change: Change, **more: bytes) -> Path:
             if data is not None:
                 new.writestr(name, data)
         for name, data in more.items():
-            new.writestr(f"{REFERENCE_FOLDER}/{name}", data)
+            new.writestr(f"{REFERENCE_FILE_FOLDER}/{name}", data)
     return target
 
 
@@ -53,7 +53,7 @@ def replaced(part: str, old: bytes, new: bytes) -> Change:
 
 def other_manifest(source: Path, target: Path, experiments: str, **files: bytes) -> Path:
     """Copy an FMU with a manifest of one file of experiments instead of its own."""
-    head = f'xmlns:fmi-ls="{ATTRIBUTE_NAMESPACE}" fmi-ls:fmi-ls-name="{STANDARD_NAME}" '
+    head = f'xmlns:fmi-ls="{MANIFEST_ATTRIBUTE_NAMESPACE}" fmi-ls:fmi-ls-name="{LAYERED_STANDARD_NAME}" '
     head += 'fmi-ls:fmi-ls-version="1.0.0-alpha.1"'
     related = '<Related type="application/x-ma-ls-experiments" source="own.exp" role="experiment"/>'
     texts = {
@@ -63,7 +63,7 @@ def other_manifest(source: Path, target: Path, experiments: str, **files: bytes)
     return copy(
         source,
         target,
-        lambda name, data: None if name.startswith(REFERENCE_FOLDER) else data,
+        lambda name, data: None if name.startswith(REFERENCE_FILE_FOLDER) else data,
         **texts,
         **files,
     )

@@ -10,10 +10,10 @@ from typing import Any
 import fmpy
 import numpy as np
 from conftest import here_alone
-from jointfmu_fmu_src.native.compiled.binary import fill_library
+from jointfmu_fmu_src.native.compiled.binary import fill_library_placeholders
 from jointfmu_fmu_src.native.compiled.compiled_models import get_compiled_model
-from jointfmu_fmu_src.native.compiled.compiler import library_file_name
-from jointfmu_fmu_src.native.data import make_fmu_data, make_placeholder, split_parameters
+from jointfmu_fmu_src.native.compiled.compiler import make_library_file_name
+from jointfmu_fmu_src.native.data import make_fmu_data_struct, make_placeholder_data_struct, split_parameters
 from jointfmu_fmu_src.native.description import format_fmi3_description
 from jointfmu_tools.pages.laboratory.describe import PageModule
 
@@ -24,18 +24,24 @@ from jointfmu.quantity import flatten_parameters
 
 def native_fmu(module: PageModule, folder: Path) -> Path:
     """FMI 3.0 FMU for the first parameter file of a module, for this machine only."""
-    name, file, here = module.model.name, module.parameter_files[0], fmpy.platform_tuple
-    given = split_parameters(module.model, file)
+    name, file, here = module.fmu_model.name, module.parameter_files[0], fmpy.platform_tuple
+    given = split_parameters(module.fmu_model, file)
     with here_alone("3"):
-        part = get_compiled_model(module.model, file, given)
-    data = make_fmu_data(module.model, file, given, part.sources)
-    library = fill_library(part.libraries["3"][here], make_placeholder(module.model, given), data, name)
+        part = get_compiled_model(module.fmu_model, file, given)
+    data = make_fmu_data_struct(module.fmu_model, file, given, part.source_texts)
+    library = fill_library_placeholders(
+        part.libraries_by_fmi_version["3"][here],
+        make_placeholder_data_struct(module.fmu_model, given),
+        data,
+        name,
+    )
     folder.mkdir(parents=True, exist_ok=True)
     with zipfile.ZipFile(folder / f"{name}.fmu", "w") as archive:
         archive.writestr(
-            "modelDescription.xml", format_fmi3_description(module.model, file, data.token, "tunable")
+            "modelDescription.xml",
+            format_fmi3_description(module.fmu_model, file, data.instantiation_token, "tunable"),
         )
-        archive.writestr(f"binaries/{here}/{library_file_name(name, here)}", library)
+        archive.writestr(f"binaries/{here}/{make_library_file_name(name, here)}", library)
     return folder / f"{name}.fmu"
 
 
@@ -51,11 +57,15 @@ class Instance:
         self.exports = wasmtime.Instance(self.store, compiled, []).exports(self.store)
         self("_initialize")
         fixed = np.array(
-            [*split_parameters(module.model, file or module.parameter_files[0]).data_values.values()]
+            [
+                *split_parameters(
+                    module.fmu_model, file or module.parameter_files[0]
+                ).data_struct_values.values()
+            ]
         )
         self.exports["memory"].write(self.store, fixed.tobytes(), self("lab_hidden_parameters"))
         self.it = self("lab_create")
-        model = module.model
+        model = module.fmu_model
         self.outputs = [v.name for v in model.outputs]
         names = [*(v.name for v in model.inputs), *self.outputs, *model.parameter_fields()]
         self.references = {name: i for i, name in enumerate(names, start=1)}
@@ -108,7 +118,7 @@ def random_values(module: PageModule, rng: np.random.Generator, switched: bool) 
 
 def refused_values(module: PageModule, rng: np.random.Generator) -> dict[str, Any]:
     """Random parameters with one number on the wrong side of its interval."""
-    fields = module.model.parameter_fields()
+    fields = module.fmu_model.parameter_fields()
     bounded = [name for name, item in fields.items() if np.isfinite(_ends(item)[0])]
     name = str(rng.choice(bounded))
     return random_values(module, rng, False) | {name: _ends(fields[name])[0] - rng.uniform(0.1, 1.0)}
@@ -123,7 +133,7 @@ def _ends(item: Field[Any]) -> tuple[float, float]:
 def _drawn(module: PageModule, rng: np.random.Generator, switched: bool) -> dict[str, Any]:
     found: dict[str, Any] = {}
     flat = module.parameter_files[0].values_by_name
-    for name, item in module.model.parameter_fields().items():
+    for name, item in module.fmu_model.parameter_fields().items():
         value, (low, high) = flat[name], _ends(item)
         width = 0.02 * (high - low)
         if isinstance(value, bool):

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 from jointfmu_tools.cli import main
-from jointfmu_tools.inputs.drawing.tables import find_row
+from jointfmu_tools.inputs.drawing.tables import find_table_row
 from jointfmu_tools.inputs.surfaces import bearing_curve, csvfile, form, solve, stiffness_table
 from jointfmu_tools.inputs.surfaces.bearing_curve import BearingCurve, HeightSample
 from jointfmu_tools.inputs.surfaces.heights import ArealMap
@@ -20,15 +20,15 @@ def sample(heights):
 
 def test_exponential_heights_have_their_decay_length_at_every_plane():
     z = np.random.default_rng(1).exponential(2e-6, 400_000)
-    curve = BearingCurve.of_sample(sample(z))
-    assert curve.mean_excess[curve.share > 1e-3] == pytest.approx(2e-6, rel=0.06)
+    curve = BearingCurve.from_height_sample(sample(z))
+    assert curve.mean_excess[curve.section_area_share > 1e-3] == pytest.approx(2e-6, rel=0.06)
 
 
 def test_gaussian_heights_have_their_own_tail_and_persson_s_length_at_heavy_load():
     z = np.random.default_rng(2).normal(0.0, 1e-6, 400_000)
-    curve = BearingCurve.of_sample(sample(z))
-    assert curve.tail_height == pytest.approx(1e-6, rel=0.02)
-    heavy = curve.share > 0.2
+    curve = BearingCurve.from_height_sample(sample(z))
+    assert curve.gaussian_tail_height == pytest.approx(1e-6, rel=0.02)
+    heavy = curve.section_area_share > 0.2
     assert curve.decay_length[heavy] == pytest.approx(0.48e-6, rel=0.02)
     assert np.all(curve.decay_length <= curve.mean_excess)
 
@@ -46,47 +46,53 @@ def test_mean_excess_of_a_normal_distribution_by_integration():
 def test_modulus_and_slope_act_through_their_product_with_the_share():
     z = np.random.default_rng(3).normal(0.0, 1e-6, 50_000)
     one, steep = (
-        BearingCurve.of_sample(sample(z)),
-        BearingCurve.of_sample(HeightSample(z, np.full(z.size, 4.0))),
+        BearingCurve.from_height_sample(sample(z)),
+        BearingCurve.from_height_sample(HeightSample(z, np.full(z.size, 4.0))),
     )
     p = np.geomspace(0.003, 0.1, 5) * 1e11
-    assert steep.stiffness(2.0 * p, 1e11) == pytest.approx(2.0 * one.stiffness(p, 1e11), rel=1e-9)
-    assert one.stiffness(2.0 * p, 2e11) == pytest.approx(2.0 * one.stiffness(p, 1e11), rel=1e-9)
+    assert steep.normal_stiffness(2.0 * p, 1e11) == pytest.approx(
+        2.0 * one.normal_stiffness(p, 1e11), rel=1e-9
+    )
+    assert one.normal_stiffness(2.0 * p, 2e11) == pytest.approx(2.0 * one.normal_stiffness(p, 1e11), rel=1e-9)
 
 
 def test_skewed_heights_have_the_tail_of_lognormal_surfaces():
     for exponent in (-0.3, 0.3):
         z = np.sign(exponent) * np.exp(exponent * np.random.default_rng(4).normal(size=400_000))
         found = sample(z)
-        tail = BearingCurve.of_sample(found).tail_height / z.std()
-        assert bearing_curve.skewed_tail_ratio(found.moment(3)) == pytest.approx(tail, rel=0.03)
-    assert bearing_curve.skewed_tail_ratio(0.0) == 1.0
+        tail = BearingCurve.from_height_sample(found).gaussian_tail_height / z.std()
+        assert bearing_curve.lognormal_tail_over_rms_height(found.standardized_moment(3)) == pytest.approx(
+            tail, rel=0.03
+        )
+    assert bearing_curve.lognormal_tail_over_rms_height(0.0) == 1.0
 
 
 def test_gap_of_two_surfaces_has_the_sum_of_their_moments():
     first = sample_periodic(lognormal(1, 128, 0.6))
-    gap = bearing_curve.add_surfaces(first, first)
+    gap = bearing_curve.add_independent_surfaces(first, first)
     assert gap.heights.std() == pytest.approx(np.sqrt(2.0), rel=0.02)
-    assert gap.moment(3) == pytest.approx(first.moment(3) / np.sqrt(2.0), rel=0.05)
+    assert gap.standardized_moment(3) == pytest.approx(first.standardized_moment(3) / np.sqrt(2.0), rel=0.05)
     assert gap.squared_slopes.mean() == pytest.approx(2.0 * first.squared_slopes.mean(), rel=0.03)
 
 
 def test_sample_of_a_scan_has_its_height_and_its_slope_where_it_is_steep():
     n, d = 256, 1e-6
     z = 1e-6 * plateau(3, n, 0.55, 0.1)
-    heights = ArealMap(z=z, dx=d, dy=d, name="scan")
-    scan = form.scan_roughness(heights, heights, n * d)
-    assert scan.sample.heights.std() == pytest.approx(scan.h, rel=0.02)
-    assert np.sqrt(scan.sample.squared_slopes.mean()) == pytest.approx(scan.slope, rel=1e-9)
-    valley = scan.sample.heights < -1e-6
-    assert scan.sample.squared_slopes[valley].mean() > scan.sample.squared_slopes[~valley].mean()
+    heights = ArealMap(z=z, dx=d, dy=d, scan_name="scan")
+    scan = form.compute_scan_roughness(heights, heights, n * d)
+    assert scan.height_sample.heights.std() == pytest.approx(scan.long_wave_rms_height, rel=0.02)
+    assert np.sqrt(scan.height_sample.squared_slopes.mean()) == pytest.approx(scan.rms_slope, rel=1e-9)
+    valley = scan.height_sample.heights < -1e-6
+    assert (
+        scan.height_sample.squared_slopes[valley].mean() > scan.height_sample.squared_slopes[~valley].mean()
+    )
 
 
 @pytest.fixture
 def scan(tmp_path):
     def write(z, name="scan.csv"):
         path = tmp_path / name
-        path.write_text(csvfile.csv_text(ArealMap(z=0.5e-6 * z, dx=4e-6, dy=4e-6, name=name)))
+        path.write_text(csvfile.format_scan_csv(ArealMap(z=0.5e-6 * z, dx=4e-6, dy=4e-6, scan_name=name)))
         return path
 
     return write
@@ -109,7 +115,7 @@ def test_a_plateau_gets_the_law_table_and_gaussian_heights_the_law_roughness(cap
         assert found["roughness"]["gaussian"] == (law == "roughness")
     file = load_parameter_file(tmp_path / "table.toml")
     assert file.values.table.stiffness == pytest.approx(surface_points(capsys, scan, tmp_path), rel=1e-4)
-    assert file.ranges["table.factor"] == bearing_curve.TABLE_FACTOR_RANGE
+    assert file.ranges["table.factor"] == bearing_curve.SURFACE_OVER_LAW_STIFFNESS_RANGE
 
 
 def surface_points(capsys, scan, tmp_path):
@@ -133,14 +139,14 @@ def test_a_profile_cannot_be_solved(capsys, tmp_path):
     z = 1e-7 * np.sin(1e5 * x) + 1e-8 * np.random.default_rng(1).normal(size=x.size)
     path.write_text("# profile: x [m], z [m]\n" + "".join(f"{a},{b}\n" for a, b in zip(x, z, strict=True)))
     assert main(["surface", str(path), "--solve"]) == 2
-    assert "is a profile; boundary elements need an areal map" in capsys.readouterr().err
+    assert "is a profile; a boundary-element solution needs an areal map" in capsys.readouterr().err
 
 
 def test_scans_of_different_spacing_are_no_pair():
-    one = ArealMap(z=gaussian(1, 64), dx=1e-6, dy=1e-6, name="one")
-    other = ArealMap(z=gaussian(1, 64), dx=2e-6, dy=2e-6, name="other")
+    one = ArealMap(z=gaussian(1, 64), dx=1e-6, dy=1e-6, scan_name="one")
+    other = ArealMap(z=gaussian(1, 64), dx=2e-6, dy=2e-6, scan_name="other")
     with pytest.raises(ValueError, match="other: spacing = 2e-06 x 2e-06 m, one has 1e-06"):
-        solve.gap_of_scans([one, other])
+        solve.compute_gap_heights([one, other])
 
 
 def test_drives_have_no_interface_table():
@@ -153,13 +159,14 @@ def test_a_finish_gives_gamma_the_range_of_its_skewness(capsys, tmp_path, option
     out = tmp_path / "contact.toml"
     words = f"new gear-contact --radii 20 30 --width 10 --load 500 --material steel {options}"
     assert main([*words.split(), "--out", str(out)]) == 0
-    assert ("does not tell the shape of the heights" in capsys.readouterr().err) != is_known
+    assert ("does not state the height distribution" in capsys.readouterr().err) != is_known
     file = load_parameter_file(out)
     assert file.values.gamma == 0.45
     if is_known:
-        numbers = find_row("finishes", "ground").numbers
+        numbers = find_table_row("finishes", "ground").sourced_numbers
         expected = [
-            0.45 * bearing_curve.skewed_tail_ratio(numbers[f"skewness_{end}"].value / np.sqrt(2.0))
+            0.45
+            * bearing_curve.lognormal_tail_over_rms_height(numbers[f"skewness_{end}"].si_value / np.sqrt(2.0))
             for end in ("low", "high")
         ]
         assert file.ranges["gamma"] == pytest.approx(expected, rel=1e-6)

@@ -18,7 +18,7 @@ VR_OPTIONS = ("--unit", "mm", "--spacing", "10um", "--missing", "-99999.9999")
 
 
 def test_matrix_without_header():
-    found = read_heights(VR, "mm", spacing=(1e-5, 2e-5), missing_value=-99999.9999)
+    found = read_heights(VR, "mm", point_spacing=(1e-5, 2e-5), missing_value=-99999.9999)
     cells = np.array([line.split(",") for line in VR.read_text().split()])
     missing = cells == "-99999.9999"
     assert isinstance(found, ArealMap)
@@ -42,7 +42,7 @@ def test_table_with_counter_and_encoders():
     assert isinstance(found, Profile)
     assert found.dx == pytest.approx(5e-6, rel=1e-9)
     np.testing.assert_allclose(found.z, altitude * 1e-6, rtol=1e-15)
-    assert found.lengths[0] - found.dx == pytest.approx(np.ptp(encoder) * 1e-6)
+    assert found.side_lengths[0] - found.dx == pytest.approx(np.ptp(encoder) * 1e-6)
 
 
 def test_table_with_two_moving_encoders_is_a_map(tmp_path):
@@ -62,7 +62,7 @@ def test_table_with_two_moving_encoders_is_a_map(tmp_path):
 def test_one_column_of_heights_is_a_profile(tmp_path):
     z = np.random.default_rng(2).standard_normal(200)
     (tmp_path / "line.txt").write_text("\n".join(f"{value:.9f}" for value in z))
-    found = read_heights(tmp_path / "line.txt", "um", spacing=(5e-7, 5e-7))
+    found = read_heights(tmp_path / "line.txt", "um", point_spacing=(5e-7, 5e-7))
     assert isinstance(found, Profile)
     assert found.dx == 5e-7
     np.testing.assert_allclose(found.z, z * 1e-6, atol=1e-15)
@@ -86,7 +86,7 @@ def test_text_with_comments_is_read_by_surfacetopography(tmp_path):
     assert np.std(found.z) == pytest.approx(1e-9 * np.std(z), rel=1e-6)
     says = r"gwyddion\.txt: states its lateral size; leave the spacing out"
     with pytest.raises(ValueError, match=says):
-        read_heights(tmp_path / "gwyddion.txt", spacing=(1e-6, 1e-6))
+        read_heights(tmp_path / "gwyddion.txt", point_spacing=(1e-6, 1e-6))
 
 
 @pytest.mark.slow
@@ -133,7 +133,7 @@ def test_refusals_of_new(tmp_path, capsys, words, says):
         (VR, (), f"{VR}: states no spacing of its points; state it, e.g. 5um (--spacing)"),
         (VR, VR_OPTIONS[2:], f"{VR}: states no length unit of its heights; state it, one of m, mm, um, nm"),
         (VR, VR_OPTIONS[:4], "148 heights are -99999.9999, all others -0.0064 to 0.0079; state the number"),
-        (VR, (*VR_OPTIONS, "--unit-x", "um"), "has no columns x and y; leave um out (--unit-x)"),
+        (VR, (*VR_OPTIONS, "--unit-x", "um"), "has no columns x and y; leave out the unit um (--unit-x)"),
         (VK, ("--spacing", "1um"), "states its spacing 138.6 nm; leave the spacing out (--spacing)"),
         (VK, ("--unit", "um"), "states the unit µm of its heights; leave the unit out (--unit)"),
         (PROFILOMETER, ("--spacing", "5um"), "states the positions of its points; leave the spacing out"),

@@ -25,19 +25,23 @@ from jointfmu.parameters import format_parameter_file, load_default, load_parame
 
 @pytest.fixture(scope="module")
 def area():
-    return synthesis.synthesize_isotropic(synthesis.Waves(size=1e-3, points=128, gamma=1.5), 2.5, 1e-9, 20, 1)
+    return synthesis.synthesize_isotropic(
+        synthesis.FractalWaves(size=1e-3, points=128, gamma=1.5), 2.5, 1e-9, 20, 1
+    )
 
 
 @pytest.fixture(scope="module")
 def line():
-    return synthesis.synthesize_profile(synthesis.Waves(size=1e-3, points=1024, gamma=1.5), 1.42, 1.21e-8, 1)
+    return synthesis.synthesize_profile(
+        synthesis.FractalWaves(size=1e-3, points=1024, gamma=1.5), 1.42, 1.21e-8, 1
+    )
 
 
 @pytest.fixture
 def folder(tmp_path, area, line, enter):
     enter(chdir(tmp_path))
-    (tmp_path / "area.csv").write_text(csvfile.csv_text(area))
-    (tmp_path / "line.csv").write_text(csvfile.csv_text(line))
+    (tmp_path / "area.csv").write_text(csvfile.format_scan_csv(area))
+    (tmp_path / "line.csv").write_text(csvfile.format_scan_csv(line))
     return tmp_path
 
 
@@ -94,7 +98,7 @@ def test_missing_points_and_spikes_are_repaired_and_counted(folder, area, capsys
     at = rng.choice(z.size, 300, replace=False)
     z.flat[at[:200]] = np.nan
     z.flat[at[200:]] += 20.0 * area.z.std()
-    (folder / "bad.csv").write_text(csvfile.csv_text(area.with_heights(z)))
+    (folder / "bad.csv").write_text(csvfile.format_scan_csv(area.replace_heights(z)))
     out = json.loads(run(capsys, "surface", "bad.csv", "--json").out)
     repairs = {one["repair"]: one["count"] for one in out["repairs"]}
     assert repairs == {"spikes taken as missing": 100, "missing points filled harmonically": 300}
@@ -117,14 +121,14 @@ def test_the_effect_of_spikes_on_sq_is_said(area):
     z.ravel()[:: z.size // 100] += 1e-4
     (repair,) = remove_spikes(replace(area, z=z))[1]
     said = float(repair.effect_note.split("Sq is ")[1].split()[0])
-    share = repair.repaired_points / repair.total_points
+    share = repair.repaired_point_count / repair.total_point_count
     expected = np.hypot(np.std(remove_form(area).z), 1e-4 * np.sqrt(share * (1.0 - share)))
     assert said == pytest.approx(expected / np.std(remove_form(area).z), rel=0.02)  # three digits, 0.6 %
 
 
 def test_clean_surfaces_have_no_spikes():
     for D in (1.1, 1.5, 1.9):
-        waves = synthesis.Waves(size=1e-3, points=256, gamma=1.5)
+        waves = synthesis.FractalWaves(size=1e-3, points=256, gamma=1.5)
         for made in (
             synthesis.synthesize_isotropic(waves, D + 1, 1e-9, 20, 1),
             synthesis.synthesize_profile(waves, D, 1e-9, 1),
@@ -136,7 +140,7 @@ def test_too_many_gaps_are_refused(area):
     z = area.z.copy()
     z[:40] = np.nan
     with pytest.raises(ValueError, match="5120 of 16384 points are missing or spikes, at most 20 %"):
-        fill_gaps(area.with_heights(z))
+        fill_gaps(area.replace_heights(z))
 
 
 @pytest.mark.parametrize(("form", "order"), [("mean", 0), ("tilt", 1), ("curvature", 2)])
@@ -144,7 +148,7 @@ def test_form_is_removed(area, form, order):
     y, x = np.mgrid[-1:1:128j, -1:1:128j]
     shape = [3.0 + 0 * x, 3.0 + 2 * x - y, 3.0 + 2 * x - y + x * y - 4 * x**2 + y**2][order]
     flat = remove_form(area, form).z
-    both = remove_form(area.with_heights(area.z + shape), form).z
+    both = remove_form(area.replace_heights(area.z + shape), form).z
     np.testing.assert_allclose(both, flat, atol=1e-13)
     assert abs(flat.mean()) < 1e-18 + 1e-12 * flat.std()
 
@@ -155,8 +159,12 @@ def test_form_is_removed(area, form, order):
         ("none.csv", None, "none.csv: is not a file"),
         ("empty.csv", "", "empty.csv: is not a surface scan: the file is empty"),
         ("words.csv", "hello 1 2\n", "words.csv: is not a surface scan: a text of 2 numbers"),
-        ("junk.vk4", "\x00\x01junk", "junk.vk4: is not a surface scan: it does not begin as a .vk4 file"),
-        ("odd.foo", "\x00\x01junk", "odd.foo: is not a surface scan: neither our CSV nor a format"),
+        (
+            "junk.vk4",
+            "\x00\x01junk",
+            "is not a surface scan: it has not the content of a .vk4 file",
+        ),
+        ("odd.foo", "\x00\x01junk", "odd.foo: is not a surface scan: neither CSV nor another format"),
         ("scan.pdf", "%PDF-1.7", "scan.pdf: is not a surface scan: it is a PDF"),
         (
             "bare.csv",
@@ -222,7 +230,7 @@ def test_what_is_refused_by_name(folder, capsys, name, content, says):
         (["--range", "1", "2"], "holds 0 values"),
         (["--out", "x.toml"], "needs --joint"),
         (["--joint", "glue"], "invalid choice: 'glue'"),
-        (["--plot", "x.pdf"], "suffix '.pdf' is not a picture, allowed are .png, .svg"),
+        (["--plot", "x.pdf"], "suffix '.pdf' is not that of a picture, allowed are .png, .svg"),
         (["--gamma", "1"], "gamma = 1 is outside (1, inf)"),
         (["--form", "cone"], "invalid choice: 'cone'"),
         (["--joint", "bolted_joint", "--out", "x.toml"], "is one side of the contact; state which"),
@@ -246,7 +254,7 @@ def test_cells_of_numbers(folder, mark):
     lines = ["# x", f"1{mark} 2.5{mark}3  # here", "", f"{gap}{mark}-1e-3{mark} {gap}"]
     (folder / "n.csv").write_text("\n".join(lines))
     expected = [[1.0, 2.5, 3.0], [np.nan, -1e-3, np.nan]]
-    np.testing.assert_array_equal(csvfile.read_table(folder / "n.csv"), expected)
+    np.testing.assert_array_equal(csvfile.read_number_table(folder / "n.csv"), expected)
 
 
 def test_bare_columns_take_the_unit(folder, line, capsys):
@@ -309,7 +317,7 @@ def test_plot(folder, capsys, suffix):
 @pytest.mark.slow
 def test_written_parameters_build(folder, line, capsys):
     """The flank is smooth enough for the law; on too rough flanks no spot is elastic."""
-    (folder / "line.csv").write_text(csvfile.csv_text(replace(line, z=0.01 * line.z)))
+    (folder / "line.csv").write_text(csvfile.format_scan_csv(replace(line, z=0.01 * line.z)))
     run(capsys, "surface", "line.csv", "--side=1", "--joint=gear_contact", "--law=yu2022", "--out=gear.toml")
     file = load_parameter_file("gear.toml", "gear_contact")
     assert file.sources["surface1.D"].startswith("identified from line.csv (side 1, the other smooth) by ")
@@ -364,7 +372,7 @@ def test_synthesize(folder, capsys, shape, D, G):
     ("change", "says"),
     [
         (["--D", "1.5"], "D = 1.5 is outside (2, 3): fractal dimension of the surface"),
-        (["--D", "2.5", "2.5"], "--D has 2 values, a surface of shape isotropic takes 1"),
+        (["--D", "2.5", "2.5"], "--D has 2 values, expected 1 for the shape isotropic"),
         (["--G", "0"], "G = 0 m is outside (0, inf)"),
         (["--G", "nan"], "G = nan m is outside (0, inf)"),
         (["--gamma", "1"], "gamma = 1 is outside (1, inf)"),
@@ -513,7 +521,7 @@ def test_the_micro_sign_of_latin_1_is_read_and_other_encodings_are_refused(folde
     ("heads", "options", "says"),
     [
         ("X [mm];Z", (), "column 'Z' states no length unit; state it, one of m, mm"),
-        ("X [mm];Z [um]", ("--unit", "mm"), "column 'X' states its unit mm; leave mm out"),
+        ("X [mm];Z [um]", ("--unit", "mm"), "column 'X' states its unit mm; leave out the unit mm"),
         ("X [mm];Z [V]", (), "unit 'V' is not one of m, mm, um, nm"),
         ("X [mm];Z [mm]", (), "the rms height is"),
         ("X [mm];Z [um]", ("--unit-z", "in"), "unit_z = 'in' is not one of m, mm, um, nm (--unit-z)"),
@@ -528,9 +536,9 @@ def test_columns_whose_units_cannot_be(folder, line, capsys, heads, options, say
 
 def test_units_as_instruments_write_them():
     """A .sur file in UTF-8 is read as Latin-1: µm becomes Âµm."""
-    assert reading.unit_size("Âµm") == pytest.approx(1e-6)
+    assert reading.length_unit_size("Âµm") == pytest.approx(1e-6)
     with pytest.raises(ValueError, match="its unit 'furlong' is not a known unit of length"):
-        reading.unit_size("furlong")
+        reading.length_unit_size("furlong")
 
 
 @pytest.mark.parametrize("unit", ["um", "µm", "μm"])
@@ -558,7 +566,7 @@ def test_signatures_are_those_of_the_installed_readers():
 
     for reader in readers:
         for place, mark in getattr(reader, "_magic", None) or []:
-            assert sift.has_signature(bytes(place) + mark), reader
+            assert sift.has_scan_signature(bytes(place) + mark), reader
         if reader.can_read(b"\x00\x01junk" * 100) != MagicMatch.NO:
             assert not set(reader._file_extensions) & set(sift.SUFFIXES_WITH_SIGNATURE), reader
 
@@ -637,7 +645,7 @@ def test_the_other_side_of_a_drawing_stays(folder, capsys):
         format_parameter_file(drawn.with_values({"h": 1e-6}, "user", "known together"))
     )
     line = refused_line(capsys, "surface", "line.csv", "--side", "1", "--params", "h.toml", "--out", "s.toml")
-    assert "h.toml: states h = 1e-06 m of both sides together; expected of the other side Ra2 or Rq2" in line
+    assert "h.toml: states h = 1e-06 m of both sides together; state Ra2 or Rq2 of the other side" in line
 
 
 @pytest.mark.parametrize("joint", [name for name, kind in KINDS.items() if kind.surfaces])
@@ -645,7 +653,7 @@ def test_the_scan_acts(folder, line, capsys, joint):
     """Without --law the joint has the law `roughness` with h of the scan; half the height gives twice K."""
     stiffness, heights = [], []
     for scale in (0.01, 0.005):
-        (folder / "line.csv").write_text(csvfile.csv_text(replace(line, z=scale * line.z)))
+        (folder / "line.csv").write_text(csvfile.format_scan_csv(replace(line, z=scale * line.z)))
         words = ("surface", "line.csv", "--side=both", "--joint", joint, "--out=j.toml", "--json")
         found = json.loads(run(capsys, *words).out)
         file = load_parameter_file("j.toml", joint)
@@ -670,9 +678,15 @@ def test_another_law_is_shown_beside_the_roughness(folder, capsys):
 @pytest.mark.parametrize(
     ("options", "says"),
     [
-        (("--law", "yu2022", "--joint", "bolted_joint"), "bolted_joint has no law 'yu2022', but zhao2018"),
+        (
+            ("--law", "yu2022", "--joint", "bolted_joint"),
+            "bolted_joint has no law 'yu2022', allowed are zhao2018",
+        ),
         (("--law", "yu2022"), "law yu2022 needs --joint"),
-        (("--law", "zhao2018", "--params", "j.toml"), "has law = 'roughness'; expected that or none (--law)"),
+        (
+            ("--law", "zhao2018", "--params", "j.toml"),
+            "has law = 'roughness', not 'zhao2018'; leave the option out (--law)",
+        ),
     ],
 )
 def test_laws_that_cannot_be(folder, capsys, options, says):

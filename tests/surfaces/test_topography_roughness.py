@@ -13,7 +13,7 @@ SIZE, POINTS, G = 1e-3, 256, 1e-9
 
 def sine(wave, amplitude, points=1000, length=1e-3):
     x = (np.arange(points) + 0.5) * (length / points)
-    return Profile(z=amplitude * np.cos(2.0 * np.pi * x / wave), dx=length / points, name="sine")
+    return Profile(z=amplitude * np.cos(2.0 * np.pi * x / wave), dx=length / points, scan_name="sine")
 
 
 @pytest.mark.parametrize("D", [2.2, 2.5, 2.8])
@@ -40,10 +40,10 @@ def test_height_of_a_function_with_a_wave_of_the_longest_length(D, gamma):
     A line has profile_share of the power of the surface that it is cut from.
     """
     H = fractal.hurst_exponent(D)
-    waves = synthesis.Waves(size=SIZE, points=5000, gamma=gamma)
-    missing = gamma ** (-2.0 * H * waves.frequencies.size)  # waves shorter than two spacings
+    waves = synthesis.FractalWaves(size=SIZE, points=5000, gamma=gamma)
+    missing = gamma ** (-2.0 * H * waves.wave_frequencies.size)  # waves shorter than two spacings
     h = fractal.rms_height(D, G, SIZE, gamma=gamma) * np.sqrt(
-        fractal.profile_power_ratio(H) * (1.0 - missing)
+        fractal.profile_variance_ratio(H) * (1.0 - missing)
     )
     assert synthesis.synthesize_profile(waves, D, G, 3).z.std() == pytest.approx(h, rel=1e-9)
 
@@ -53,9 +53,9 @@ def test_one_surface_has_one_height():
     near 1 it is from the spectrum."""
     H = 0.58
     profile = fractal.rms_height(2.0 - H, G, SIZE)
-    assert fractal.rms_height(3.0 - H, fractal.areal_roughness(G, H), SIZE, is_areal=True) == pytest.approx(
-        profile
-    )
+    assert fractal.rms_height(
+        3.0 - H, fractal.areal_fractal_roughness(G, H), SIZE, is_areal=True
+    ) == pytest.approx(profile)
     assert fractal.rms_height(2.0 - H, G, SIZE, gamma=1.0001) == pytest.approx(profile, rel=1e-4)
     assert fractal.hurst_exponent(1.42) == pytest.approx(0.58)
     assert fractal.hurst_exponent(2.42, is_areal=True) == pytest.approx(0.58)
@@ -68,20 +68,20 @@ def test_specimen_of_zhao():
 
 def test_a_sine_counts_up_to_its_wavelength():
     line = sine(5e-5, 2e-6)
-    over, under = (form.scan_roughness(line, line, wave) for wave in (5.1e-5, 4.9e-5))
-    assert over.h == pytest.approx(2e-6 / np.sqrt(2.0), rel=1e-6)
-    assert under.h < 1e-9 * over.h
+    over, under = (form.compute_scan_roughness(line, line, wave) for wave in (5.1e-5, 4.9e-5))
+    assert over.long_wave_rms_height == pytest.approx(2e-6 / np.sqrt(2.0), rel=1e-6)
+    assert under.long_wave_rms_height < 1e-9 * over.long_wave_rms_height
     assert (over.rms_height, over.mean_absolute_height) == (
         pytest.approx(2e-6 / np.sqrt(2.0), rel=1e-6),
         pytest.approx(4e-6 / np.pi, rel=1e-2),
     )
     # rms slope of the line times sqrt(2): that of the isotropic surface
-    assert over.slope == pytest.approx(2.0 * np.pi / 5e-5 * 2e-6, rel=1e-6)
-    assert under.slope < 1e-9 * over.slope
+    assert over.rms_slope == pytest.approx(2.0 * np.pi / 5e-5 * 2e-6, rel=1e-6)
+    assert under.rms_slope < 1e-9 * over.rms_slope
     with pytest.raises(ValueError, match=r"longest wave = 1e-05 m is outside \[2e-05, 0.001\]"):
-        form.scan_roughness(line, line, 1e-5)
+        form.compute_scan_roughness(line, line, 1e-5)
     with pytest.raises(ValueError, match=r"longest wave = 0\.002 m is outside"):
-        form.scan_roughness(line, line, 2e-3)
+        form.compute_scan_roughness(line, line, 2e-3)
 
 
 @pytest.mark.parametrize("D", [2.3, 2.7])
@@ -89,21 +89,23 @@ def test_height_of_a_scan_over_a_longest_wave(D):
     """Scan of a surface with longer waves: the height below the longest wave is that of the spectrum within 6
     %."""
     made = rough_surfaces.periodic(SIZE, POINTS, D, G, (SIZE / 2.0, 2.0 * SIZE / POINTS), 2)
-    cut = ArealMap(z=made.z[:160, :200].copy(), dx=made.dx, dy=made.dy, name="cut")
+    cut = ArealMap(z=made.z[:160, :200].copy(), dx=made.dx, dy=made.dy, scan_name="cut")
     flat = remove_form(cut)
     shortest = 2.0 * SIZE / POINTS
     for longest in (SIZE / 5.0, SIZE / 10.0):
-        found = form.scan_roughness(flat, flat, longest)
+        found = form.compute_scan_roughness(flat, flat, longest)
         H = 3.0 - D
-        assert found.h == pytest.approx(rough_surfaces.rms_height(H, G, longest, shortest), rel=0.06)
+        assert found.long_wave_rms_height == pytest.approx(
+            rough_surfaces.rms_height(H, G, longest, shortest), rel=0.06
+        )
         slope = rough_surfaces.rms_slope(H, G, longest, found.shortest_wave)
-        assert found.slope == pytest.approx(slope, rel=0.06)
+        assert found.rms_slope == pytest.approx(slope, rel=0.06)
 
 
 def test_missing_points_count_in_h_as_filled():
     line = sine(5e-5, 1e-6)
     z = line.z.copy()
     z[100:110] = np.nan
-    found = form.scan_roughness(line.with_heights(z), line, 1e-3)
+    found = form.compute_scan_roughness(line.replace_heights(z), line, 1e-3)
     assert found.rms_height == pytest.approx(1e-6 / np.sqrt(2.0), rel=0.02)
-    assert np.isfinite(found.h)
+    assert np.isfinite(found.long_wave_rms_height)

@@ -147,7 +147,7 @@ def test_plugin_and_fmu_wind_up_as_is_said(tmp_path, capsys, few_poses):
         mujoco.mj_step(model, data)
     file = str(tmp_path / "fmi2/six_axis.fmu")
     proved = prove(Path(file))
-    assert (proved.failures, proved.executed_experiment_count) == ([], 3)
+    assert (proved.failure_messages, proved.executed_experiment_count) == ([], 3)
     outputs = [f"{name}.drive.phi_rel" for name in said["wind_up"]]
     damped = {f"{name}.drive.d": 2000.0 for name in said["wind_up"]}
     swing = fmpy.simulate_fmu(file, stop_time=1.0, output_interval=1e-2, output=outputs, start_values=damped)
@@ -165,8 +165,13 @@ def test_frequencies_are_those_of_the_model_in_mujoco(six, capsys, tmp_path):
         spec, {f"joint{i}": make_transmission(drive(n).file) for i, n in enumerate(SIZES, 1)}
     )
     rigid = spec.compile()
-    pose = elastic.joint_positions(rigid, {"joint2": "0.7", "joint3": "0.8"})
-    springs = [SimpleNamespace(joint=axis.joint, stiffness=axis.spring.stiffness) for axis in axes]
+    pose = elastic.make_robot_pose(rigid, {"joint2": "0.7", "joint3": "0.8"})
+    springs = [
+        SimpleNamespace(
+            joint_name=axis.joint_name, stiffness_at_torque=axis.fitted_spring.stiffness_at_torque
+        )
+        for axis in axes
+    ]
     expected = poses.compute_frequencies(rigid, springs, pose, 3.0, rigid.body("flange").id)
     said, _ = six
     model, data = held(mujoco.MjSpec.from_file(said["written"][0]), 3.0)
@@ -428,7 +433,7 @@ def test_an_older_mujoco_is_refused(tmp_path):
         with environment(PYTHONPATH=str(tmp_path)):
             done = subprocess.run(command, capture_output=True, text=True, timeout=100)
         assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
-        assert "has no springs that yield; expected 4.0 or newer" in done.stderr
+        assert "has no springs that yield (springyield); expected 4.0 or newer" in done.stderr
 
 
 def test_a_file_that_is_no_robot_is_refused(tmp_path, capsys):
@@ -501,7 +506,7 @@ def test_a_link_without_mass_is_said(tmp_path, capsys, few_poses):
         assert [line for line in said["notes"] if "no mass" in line] == noted
 
 
-def test_a_drive_that_no_weight_loads_is_said_and_drawn_so(tmp_path, capsys, few_poses, monkeypatch):
+def test_a_drive_without_gravity_load_is_named_and_drawn(tmp_path, capsys, few_poses, monkeypatch):
     """A constant frequency is drawn as one value, without its rounding; the payload with its effect."""
     drawn = []
     monkeypatch.setattr(pictures.plots, "save_figure", lambda figure, path: drawn.append(figure))
@@ -512,7 +517,9 @@ def test_a_drive_that_no_weight_loads_is_said_and_drawn_so(tmp_path, capsys, few
     assert panel.get_ylim()[0] == 0.0
     assert np.ptp(panel.lines[0].get_ydata()) == 0.0
     assert all("do not load the drives in this pose" in axes.texts[0].get_text() for axes in drawn[1].axes)
-    assert any(line.startswith("joint4: weight and payload do not load the drive") for line in facts["notes"])
+    assert any(
+        line.startswith("joint4: weight and payload load no drive in any pose") for line in facts["notes"]
+    )
     made(capsys, ROBOT, tmp_path / "two", *words, "--drive", "joint6=CSG-14-100")  # a map of two axes
     assert all("in all poses" in axes.get_title() for axes in drawn[2].axes if axes.get_title())
 
@@ -533,19 +540,19 @@ def test_ringing_after_a_stop_is_that_of_mujoco(six):
         spec, {f"joint{i}": make_transmission(drive(size).file) for i, size in enumerate(SIZES, 1)}
     )
     model = spec.compile()
-    pose, tip = elastic.joint_positions(model, {"joint2": "0.7", "joint3": "0.8"}), model.body("flange").id
+    pose, tip = elastic.make_robot_pose(model, {"joint2": "0.7", "joint3": "0.8"}), model.body("flange").id
     time = np.arange(0.0, 1.0, 2e-4)
     found = poses.compute_ringing(model, axes, pose, 3.0, tip, time)[1]
     assert said["ringing"]["joint2"] == {
-        "amplitude": pytest.approx(found.distance[0]),
-        "last_amplitude": pytest.approx(found.last_amplitude),
+        "amplitude": pytest.approx(found.tip_distance[0]),
+        "last_amplitude": pytest.approx(found.final_tip_amplitude),
     }
-    load, _ = poses.compute_torques(model, axes, pose, 3.0, tip)
-    inertia = poses.compute_link_inertia(model, axes, pose, 3.0, tip)
-    stiffness = [axis.stiffness(t) for axis, t in zip(axes, load.tolist(), strict=True)]
+    load, _ = poses.compute_weight_torques(model, axes, pose, 3.0, tip)
+    inertia = poses.compute_link_mass_matrix(model, axes, pose, 3.0, tip)
+    stiffness = [axis.stiffness_at_torque(t) for axis, t in zip(axes, load.tolist(), strict=True)]
     for k, (joint, axis) in enumerate(zip(spec.joints, axes, strict=True)):
         joint.armature, joint.stiffness = 0.0, [stiffness[k], 0.0, 0.0]
-        joint.damping = [axis.drive.damping, 0.0, 0.0]
+        joint.damping = [axis.drive.output_damping, 0.0, 0.0]
         joint.springref = float(pose[k] - load[k] / stiffness[k])  # at rest in the pose
     model, data = held(spec, 3.0)
     model.opt.integrator, model.opt.timestep = mujoco.mjtIntegrator.mjINT_RK4, 2e-4
@@ -558,4 +565,4 @@ def test_ringing_after_a_stop_is_that_of_mujoco(six):
         mujoco.mj_forward(model, data)
         distance.append(np.linalg.norm(data.body("flange").xpos - rest))
         mujoco.mj_step(model, data)
-    assert distance == pytest.approx(found.distance[:1000], abs=0.01 * found.distance[0])
+    assert distance == pytest.approx(found.tip_distance[:1000], abs=0.01 * found.tip_distance[0])

@@ -5,8 +5,19 @@ import numpy as np
 import pytest
 from clients import needs
 from jointfmu_tools.exchange.robots.elastic import read_robot
-from jointfmu_tools.exchange.robots.rigid_tree import check_tree, find_frame, list_omissions, read_links
-from jointfmu_tools.systems.multibody import GROUND, Body, RotorMotion, forward_dynamics, frame_motion
+from jointfmu_tools.exchange.robots.rigid_tree import (
+    check_joint_tree,
+    find_body_frame,
+    list_omitted_effects,
+    read_links,
+)
+from jointfmu_tools.systems.multibody import (
+    GROUND_INDEX,
+    RigidBody,
+    RotorMotion,
+    compute_frame_motion,
+    forward_dynamics,
+)
 from robots import OTHERS, ROBOT, add_rotors, robot_file
 
 STATES = 1000
@@ -51,7 +62,7 @@ def robot(request, tmp_path_factory):
 def solve_forces(links, gravity, q, v, a, payload=None):
     prescribed = [None] * len(links)
     motion = forward_dynamics(links, gravity, list(q.T), list(v.T), prescribed, list(a.T), payload=payload)
-    return np.stack(np.broadcast_arrays(*motion.forces), axis=1)
+    return np.stack(np.broadcast_arrays(*motion.joint_forces), axis=1)
 
 
 def test_inverse_and_forward_dynamics_are_mujocos(robot):
@@ -66,18 +77,18 @@ def test_inverse_and_forward_dynamics_are_mujocos(robot):
     found = solve_forces(links, gravity, q, v, a)
     assert np.abs(found - expected).max() < PRECISION * np.abs(expected).max()
     motion = forward_dynamics(links, gravity, list(q.T), list(v.T), list(expected.T))
-    assert np.abs(np.transpose(motion.accelerations) - a).max() < 10.0 * PRECISION * np.abs(a).max()
+    assert np.abs(np.transpose(motion.joint_accelerations) - a).max() < 10.0 * PRECISION * np.abs(a).max()
 
 
 def test_a_payload_and_the_motion_of_the_tip_are_mujocos(robot):
     """The payload as a body of the robot: mass, centre and inertia in the frame of the tip."""
     tip, mass, centre, inertia = robot.nbody - 1, 2.0, [0.1, -0.05, 0.2], [0.03, 0.02, 0.04]
     q, v, a = random_states(robot, 50)
-    frame, data = find_frame(robot, tip), mujoco.MjData(robot)
+    frame, data = find_body_frame(robot, tip), mujoco.MjData(robot)
     links, gravity = read_links(robot, ()), robot.opt.gravity.tolist()
-    added = solve_forces(links, gravity, q, v, a, Body(frame, mass, centre, inertia))
+    added = solve_forces(links, gravity, q, v, a, RigidBody(frame, mass, centre, inertia))
     added -= solve_forces(links, gravity, q, v, a)
-    motion = frame_motion(links, frame, list(q.T), list(v.T))
+    motion = compute_frame_motion(links, frame, list(q.T), list(v.T))
     for k in range(len(q)):
         data.qpos[:], data.qvel[:], data.qacc[:] = q[k], v[k], a[k]
         mujoco.mj_inverse(robot, data)
@@ -113,15 +124,15 @@ def test_rotors_are_bodies_of_mujoco():
         data.qpos[dofs], data.qvel[dofs], data.qfrc_applied[dofs] = state
         mujoco.mj_forward(model, data)
         rotors = {name: RotorMotion(J, v[6 + k], tau[6 + k]) for k, name in enumerate(names)}
-        motion = forward_dynamics(links, rigid.opt.gravity, q[:6], v[:6], tau[:6], rotors=rotors)
-        found = [*motion.accelerations, *motion.rotor_accelerations.values()]
+        motion = forward_dynamics(links, rigid.opt.gravity, q[:6], v[:6], tau[:6], rotor_motions=rotors)
+        found = [*motion.joint_accelerations, *motion.rotor_accelerations.values()]
         assert found == pytest.approx(data.qacc[dofs], rel=1e-8, abs=1e-6)
         given = {
             name: RotorMotion(J, v[6 + k], None, motion.rotor_accelerations[name])
             for k, name in enumerate(names)
         }
-        again = forward_dynamics(links, rigid.opt.gravity, q[:6], v[:6], tau[:6], rotors=given)
-        assert again.accelerations == pytest.approx(motion.accelerations, rel=1e-9)
+        again = forward_dynamics(links, rigid.opt.gravity, q[:6], v[:6], tau[:6], rotor_motions=given)
+        assert again.joint_accelerations == pytest.approx(motion.joint_accelerations, rel=1e-9)
 
 
 @needs("Pinocchio")
@@ -158,7 +169,7 @@ def test_inverse_dynamics_is_pinocchios(name):
 def test_what_is_no_tree_is_refused(old, new, line):
     model = mujoco.MjModel.from_xml_string(TREE.replace(old, new))
     with pytest.raises(ValueError, match=line) as refused:
-        check_tree(model)
+        check_joint_tree(model)
     assert "\n" not in str(refused.value)
 
 
@@ -168,9 +179,9 @@ def test_effects_that_are_left_out_are_listed():
         "</worldbody>", pair
     )
     text = text.replace('<body name="tool"', '<body name="tool" gravcomp="1"')
-    assert list_omissions(mujoco.MjModel.from_xml_string(text)) == [
+    assert list_omitted_effects(mujoco.MjModel.from_xml_string(text)) == [
         "dry friction (frictionloss) of left",
         "couplings of joints (equality pair): the joints move independently",
         "compensation of gravity (gravcomp)",
     ]
-    assert find_frame(mujoco.MjModel.from_xml_string(TREE), 1).link == GROUND
+    assert find_body_frame(mujoco.MjModel.from_xml_string(TREE), 1).link_index == GROUND_INDEX

@@ -10,7 +10,7 @@ from fmpy.fmi3 import FMU3Model, FMU3Slave
 from fmpy.validation import validate_fmu
 from jointfmu_tools.exchange.robots import elastic, robot_system
 from jointfmu_tools.joints.harmonic_drive.transmission import make_transmission
-from jointfmu_tools.systems.fmu.build import build_system, make_sources
+from jointfmu_tools.systems.fmu.build import build_system_fmus, make_c_sources
 from robots import ROBOT, add_rotors
 
 from jointfmu.parameters import load_parameter_file
@@ -44,13 +44,13 @@ def make_arm(folder, driven, has_motor_angles=False):
     files = {NAMES[k]: drive_file(folder, k) for k in driven}
     axes = elastic.make_axes(spec, {name: make_transmission(file) for name, file in files.items()})
     model = spec.compile()
-    pose, tip = elastic.joint_positions(model, POSE), model.body("flange").id
+    pose, tip = elastic.make_robot_pose(model, POSE), model.body("flange").id
     return robot_system.read_arm(model, axes, files, pose, PAYLOAD, tip, has_motor_angles), axes
 
 
 def build(arm, folder):
     system = robot_system.make_robot_system(arm, "robot", "robot of a test", PAYLOAD)
-    (file,) = build_system(replace(system, stop_time=0.02), folder, "3", (fmpy.platform_tuple,))
+    (file,) = build_system_fmus(replace(system, stop_time=0.02), folder, "3", (fmpy.platform_tuple,))
     assert validate_fmu(str(file)) == []
     return fmpy.extract(str(file), str(folder / "unzipped"))
 
@@ -108,8 +108,8 @@ RATES = [f"{name}.a" for name in NAMES] + [f"{name}.motor.a" for name in NAMES]
 def place(model, dofs, arm, travel, speeds):
     data = mujoco.MjData(model)
     data.qpos[dofs] = travel
-    data.qpos[dofs[:6]] += [joint.start for joint in arm.joints]
-    data.qpos[dofs[6:]] += RATIOS * [joint.start for joint in arm.joints]  # unwound there
+    data.qpos[dofs[:6]] += [joint.start_position for joint in arm.joints]
+    data.qpos[dofs[6:]] += RATIOS * [joint.start_position for joint in arm.joints]  # unwound there
     data.qvel[dofs] = speeds
     return data
 
@@ -226,22 +226,22 @@ def test_prescribed_motors_and_a_joint_without_a_drive(tmp_path):
     """The FMU's outputs are those of the equations in Python, whose dynamics MuJoCo confirms elsewhere."""
     arm, _ = make_arm(tmp_path, (1, 2), has_motor_angles=True)
     m, rng = Robot(build(arm, tmp_path), is_exchange=True), np.random.default_rng(8)
-    component = arm.make_component(PAYLOAD)
-    states, inputs = component.model.outputs[:4], component.system_inputs
+    component = arm.make_arm_component(PAYLOAD)
+    states, inputs = component.fmu_model.outputs[:4], component.system_inputs
     assert [v.name for v in states] == ["joint2.rotation", "joint3.rotation", "joint2.w", "joint3.w"]
     for _ in range(5):
         values = {v.name: rng.normal(0.0, 1.0) for v in (*states, *inputs)}
         m.write(values)
         values |= {f"{name}.tau2": m.read([f"{name}.drive.tau2"])[0] for name in ("joint2", "joint3")}
-        expected = arm.evaluate_outputs(component.parameters.values, values)
-        outputs = [v.name for v in component.model.outputs]
+        expected = arm.evaluate_outputs(component.parameter_file.values, values)
+        outputs = [v.name for v in component.fmu_model.outputs]
         assert m.read(outputs) == pytest.approx([expected[name] for name in outputs], rel=1e-9, abs=1e-9)
 
 
 def test_long_functions_keep_their_values_off_the_stack(tmp_path):
     """Else they need more than a page of it, which Windows refuses without a library of the compiler."""
     arm, _ = make_arm(tmp_path, (0,))
-    files, _ = make_sources(robot_system.make_robot_system(arm, "robot", "robot of a test", PAYLOAD))
+    files, _ = make_c_sources(robot_system.make_robot_system(arm, "robot", "robot of a test", PAYLOAD))
     (text,) = (
         text for name, text in files.items() if name.endswith(".c") and "void outputs_jacobian(" in text
     )

@@ -205,7 +205,10 @@ def test_urdf_states_the_loop(folder, capsys):
             r"--torque = 0 N.m is outside \(0, 204\] N.m of CSG-25-100",
         ),
         (["mjcf", "CSG-25-100", "--torque", "nan"], r"--torque = nan N.m is outside"),
-        (["mjcf", "CSG-25-100", "--units", "mm-N-MPa-t"], "--units = mm-N-MPa-t: mjcf is in m-N-Pa-kg"),
+        (
+            ["mjcf", "CSG-25-100", "--units", "mm-N-MPa-t"],
+            "--units = mm-N-MPa-t: mjcf is always in m-N-Pa-kg",
+        ),
         (["mjcf", "CSG-25-100", "--error", "0.1"], "--error has no effect for mjcf"),
         (["csv", "curve", "--torque", "3"], "--torque has no effect for csv; it is for mjcf, urdf"),
         (["urdf", "GearMesh"], "is a gear_mesh, no drive of a motor"),

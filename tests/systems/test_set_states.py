@@ -13,7 +13,7 @@ from jointfmu_fmu_src.native.build import build_native_fmu
 from jointfmu_fmu_src.partners import load_partner_parameters
 from jointfmu_fmu_src.partners.laws import GRAVITY
 from jointfmu_tools.systems.fmu.assembly import assemble_system
-from jointfmu_tools.systems.fmu.build import build_system
+from jointfmu_tools.systems.fmu.build import build_system_fmus
 from jointfmu_tools.systems.system import load_system
 from scipy.integrate import solve_ivp
 
@@ -40,7 +40,9 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
             for name in ("RotationalInertia", "TranslationalMass"):
                 for version in "23":
                     build_native_fmu(name, load_partner_parameters(name), out / f"fmi{version}", version)
-            build_system(assemble_system(load_system("robot_joint")), out, platforms=(fmpy.platform_tuple,))
+            build_system_fmus(
+                assemble_system(load_system("robot_joint")), out, platforms=(fmpy.platform_tuple,)
+            )
 
     return made_once(tmp_path_factory, "set_states", make)
 

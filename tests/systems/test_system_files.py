@@ -15,7 +15,7 @@ from jointfmu_fmu_src.building import build_fmus
 from jointfmu_fmu_src.partners.laws import GRAVITY, TorqueCurve
 from jointfmu_tools import cli
 from jointfmu_tools.exchange.modelica.library import render_system
-from jointfmu_tools.exchange.modelica.records import template_environment
+from jointfmu_tools.exchange.modelica.records import create_template_environment
 from jointfmu_tools.exchange.modelica.systems import render_system_model
 from jointfmu_tools.pages.report.systems import joint_load_outputs, system_charts
 from jointfmu_tools.systems import ssp
@@ -146,7 +146,7 @@ def second(model: str, inertia: str = "", unit: str = "") -> str:
         ([("[link]", "[motor]")], "is not valid TOML (Cannot declare ('motor',) twice"),
         ([("value = 0.05", "value = -0.05")], "link.J = -0.05 kg.m2 is outside (0, inf)"),
         ([("connect = [", "connect = [ 3,")], "connect = 3, expected pairs of ends"),
-        ([("schema = 1", "schema = 7")], "schema = 7, allowed is 1"),
+        ([("schema = 1", "schema = 7")], "schema = 7, expected the line schema = 1"),
         (
             [
                 (
@@ -154,7 +154,7 @@ def second(model: str, inertia: str = "", unit: str = "") -> str:
                     '[motor]\nmodel = "RotationalInertia"\nparameters = "a.toml"',
                 )
             ],
-            "motor.parameters = 'a.toml', expected none of a RotationalInertia",
+            "motor.parameters = 'a.toml', but a RotationalInertia takes no parameters",
         ),
         (
             [('model = "HarmonicDriveSpring"', 'model = "HarmonicDriveSpring"\nparameters = "none.toml"')],
@@ -171,7 +171,7 @@ def second(model: str, inertia: str = "", unit: str = "") -> str:
         ([(DRIVE, f"{DRIVE}\ncatalogue = 17")], "drive.catalogue = 17, expected a text"),
         (
             [(DRIVE, 'model = "GearMesh"\ncatalogue = "m3"')],
-            "drive.catalogue = 'm3', expected none of a gear_mesh: it has no catalogue",
+            "drive.catalogue = 'm3', but a gear_mesh has no catalogue",
         ),
         (
             [
@@ -180,7 +180,7 @@ def second(model: str, inertia: str = "", unit: str = "") -> str:
                     '[motor]\nmodel = "RotationalInertia"\ncatalogue = "CSG-17-100"',
                 )
             ],
-            "motor.catalogue = 'CSG-17-100', expected none of a RotationalInertia",
+            "motor.catalogue = 'CSG-17-100', but a RotationalInertia takes no catalogue",
         ),
     ],
 )
@@ -218,9 +218,9 @@ def test_an_arm_that_is_wrong_is_refused_in_one_line(
 
 
 @pytest.mark.parametrize("name", list_system_names())
-def test_every_input_is_fed_once_and_lags_stand_where_joints_push(name: str) -> None:
+def test_every_input_has_one_source_and_lags_are_set_at_joints(name: str) -> None:
     found = load_system(name)
-    fed = [(w.target_component, w.input) for w in find_signals(found)]
+    fed = [(w.target_component, w.target_input) for w in find_signals(found)]
     assert len(fed) == len(set(fed))
     pushed = {w.target_component for w in find_signals(found) if w.source_component in found.joints}
     assert set(find_lag_parameters(found)) == pushed
@@ -313,23 +313,23 @@ def test_a_double_pendulum_has_the_textbooks_torques() -> None:
     np.testing.assert_allclose(
         arm.inverse_dynamics(q, v, a), np.stack([first, other], axis=1), rtol=1e-9, atol=1e-9
     )
-    np.testing.assert_allclose(arm.axis_inertias(q[0]), [inertia[0], m2 * l2**2], rtol=1e-9)
+    np.testing.assert_allclose(arm.compute_axis_inertias(q[0]), [inertia[0], m2 * l2**2], rtol=1e-9)
 
 
 def test_the_tip_is_where_the_links_lead() -> None:
     reach = sum(link.length for link in ROBOT.links)
     zero = np.zeros((1, 6))
-    np.testing.assert_allclose(ROBOT.tip_position(zero), [[0.0, 0.0, reach]], atol=1e-15)
+    np.testing.assert_allclose(ROBOT.compute_tip_position(zero), [[0.0, 0.0, reach]], atol=1e-15)
     level = np.array([[0.5, math.pi / 2, 0.0, 0.3, 0.0, 0.7]])
     above = reach - ROBOT.links[0].length
     expected = [[above * math.cos(0.5), above * math.sin(0.5), ROBOT.links[0].length]]
-    np.testing.assert_allclose(ROBOT.tip_position(level), expected, atol=1e-12)
+    np.testing.assert_allclose(ROBOT.compute_tip_position(level), expected, atol=1e-12)
 
 
 def test_coupled_links_have_the_inverse_dynamics_of_the_arm() -> None:
     """At random states: accelerations from the torques of inverse dynamics, residuals, tip."""
     links = ArmLinks(ROBOT)
-    parameters = links.make_component().parameters.values
+    parameters = links.make_component().parameter_file.values
     q, speed, acceleration = np.random.default_rng(5).normal(size=(3, 20, 6))
     columns = {"phi": q, "w": speed, "a": acceleration, "tau": ROBOT.inverse_dynamics(q, speed, acceleration)}
     values = {
@@ -342,7 +342,7 @@ def test_coupled_links_have_the_inverse_dynamics_of_the_arm() -> None:
         np.testing.assert_allclose(found[f"{name}_link.a"], acceleration[:, k], rtol=1e-9, atol=1e-9)
     np.testing.assert_allclose(links.evaluate_residuals(parameters, values), 0.0, atol=1e-9)
     tip = np.stack([found[f"tip.{x}"] for x in "xyz"], axis=1)
-    np.testing.assert_allclose(tip, ROBOT.tip_position(q), atol=1e-12)
+    np.testing.assert_allclose(tip, ROBOT.compute_tip_position(q), atol=1e-12)
 
 
 def test_six_drives_differ_and_wind_up_as_their_catalogue_says() -> None:
@@ -369,14 +369,14 @@ def test_curves_of_the_arm_are_the_inverse_dynamics() -> None:
     """Seventeen points leave an error of 4e-4 of the largest torque of an axis."""
     found = load_system("six_axis_robot")
     x = np.linspace(0.0, 1.0, 301)
-    q, speed, acceleration = ROBOT.compute_motion(ROBOT.start + ROBOT.duration * x)
+    q, speed, acceleration = ROBOT.compute_motion(ROBOT.motion_start + ROBOT.motion_duration * x)
     torque = ROBOT.inverse_dynamics(q, speed, acceleration)
     for k, name in enumerate(ROBOT.axis_names):
-        given = found.components[f"{name}_load"].values
+        given = found.components[f"{name}_load"].stated_values
         curve = TorqueCurve(**given)
-        time = ROBOT.start + ROBOT.duration * x
+        time = ROBOT.motion_start + ROBOT.motion_duration * x
         values = np.array([curve.evaluate_outputs({"time": t, "tau_in": 0.0})["tau"] for t in time])
-        inertia = found.list_values[f"{name}_link.J"]
+        inertia = found.stated_values[f"{name}_link.J"]
         left = inertia * acceleration[:, k] - torque[:, k]
         assert np.max(np.abs(values - left)) < 5e-4 * np.max(np.abs(torque[:, k]))
     assert re.search(r"J = .*", ARM) is None  # computed, not stated
@@ -398,10 +398,10 @@ def test_the_modelica_model_is_as_warm_and_as_tight_as_the_fmus(tmp_path):
     column = (ROOT / "models/systems/bolted_column.toml").read_text(encoding="utf-8")
     bolted = ('model = "BoltedJoint"\npreload', 'model = "BoltedJoint"\nparameters = "bolted_joint.toml"\n#')
     asked = []
-    known = SimpleNamespace(name="Known")
+    known = SimpleNamespace(record_name="Known")
     column = read_system(changed(tmp_path, bolted, text=column))
     render_system_model(
-        column, template_environment(), lambda kind, file, point: asked.append(point) or known
+        column, create_template_environment(), lambda kind, file, point: asked.append(point) or known
     )
     assert asked == [(12e3, 0.0, 313.15)]
 
@@ -444,10 +444,10 @@ def test_a_picture_shows_the_peaks_of_a_run():
     torque[[1233, 1234]] = -3.0, 77.5
     ((output, _),) = joint_load_outputs(robot).values()
     (panel,) = system_charts(robot, {"time": time, output: torque})
-    (drawn,) = panel.series
-    assert (np.min(drawn.y), np.max(drawn.y)) == (-3.0, 77.5)
-    assert len(drawn.x) <= 800
-    assert np.all(np.diff(drawn.x) > 0.0)
+    (drawn,) = panel.chart_series
+    assert (np.min(drawn.y_values), np.max(drawn.y_values)) == (-3.0, 77.5)
+    assert len(drawn.x_values) <= 800
+    assert np.all(np.diff(drawn.x_values) > 0.0)
 
 
 def test_ring_without_fmus_says_what_writes_them(tmp_path, enter, capsys):
@@ -468,27 +468,27 @@ def test_the_systems_replace_no_joint_of_the_user(tmp_path):
         )
         before = path.read_bytes()
         with pytest.raises(InputRefusal, match="was built from other parameters") as error:
-            ssp.build_systems(tmp_path, column)
+            ssp.build_system_archives(tmp_path, column)
         assert str(error.value).startswith(f"{path}: ")
         assert path.read_bytes() == before
         for overwrite in (True, False):  # then it has the parameters of the systems
-            assert path in ssp.build_systems(tmp_path, column, overwrite=overwrite)
+            assert path in ssp.build_system_archives(tmp_path, column, overwrite=overwrite)
 
 
 def test_a_system_is_scaled_to_another_joint():
     """The shipped load of the small drive is below the friction of a large one, which would not turn."""
     system, small = load_system("robot_joint"), load_default("harmonic_drive")
-    assert system.with_joint(small).list_values == system.list_values
+    assert system.with_joint_parameter_file(small).stated_values == system.stated_values
     large = replaced(
         small.values, {"rated_torque": 87.0, "ratio": -50.0, "friction_coulomb": 0.07, "load_loss": 0.1}
     )
     file = dataclasses.replace(small, values=large, name="large")
-    scaled = system.with_joint(file)
-    before, after = system.list_values, scaled.list_values
+    scaled = system.with_joint_parameter_file(file)
+    before, after = system.stated_values, scaled.stated_values
     rated = 87.0 / 5.0
     assert after["link.m"] == pytest.approx(rated * before["link.m"])
     assert after["link.l"] == before["link.l"]
     assert after["motor.J"] == pytest.approx(4.0 * rated * before["motor.J"])
     assert after["load.pulse_height"] == pytest.approx(2.0 * rated * before["load.pulse_height"])
     assert after["load.ramp_height"] == pytest.approx(2.0 * rated * before["load.ramp_height"] + 0.07)
-    assert scaled.components["motor"].sources["J"].endswith("; scaled to large")
+    assert scaled.components["motor"].value_sources["J"].endswith("; scaled to large")

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from jointfmu_tools import cli
-from jointfmu_tools.inputs.fitting.least_squares import Unknown, covariance, solve
+from jointfmu_tools.inputs.fitting.least_squares import Unknown, parameter_covariance, solve_least_squares
 from jointfmu_tools.systems.fit.compiled_system import CompiledSystem
 from jointfmu_tools.systems.fit.correlated_residuals import whiten_jacobian
 from jointfmu_tools.systems.fit.estimate import fit_system
@@ -39,14 +39,14 @@ def test_intervals_hold_with_correlated_residuals(correlation):
         noise = lfilter([1.0], [1.0, -correlation], random.normal(size=(2, n + 200)))[:, 200:].ravel()
         found = np.linalg.lstsq(jacobian, noise, rcond=None)[0]
         reduced, quantile = whiten_jacobian(jacobian, np.split(noise - jacobian @ found, 2))
-        held += np.sum(np.abs(found) < quantile * np.sqrt(np.diag(covariance(reduced, 1.0))))
+        held += np.sum(np.abs(found) < quantile * np.sqrt(np.diag(parameter_covariance(reduced, 1.0))))
     assert held / (3 * count) > 0.95 - 4.0 * np.sqrt(0.95 * 0.05 / (3 * count))
 
 
 def test_a_parameter_of_any_sign_is_fitted():
     x = np.linspace(-1.0, 1.0, 50)
     unknowns = [Unknown("a", "1", 2.0, 0.0, np.inf), Unknown("b", "m", 0.5, -np.inf, np.inf, 2.0)]
-    found = solve(unknowns, lambda v: np.sin(v["a"] * x) + v["b"] - np.sin(1.5 * x) + 0.7)
+    found = solve_least_squares(unknowns, lambda v: np.sin(v["a"] * x) + v["b"] - np.sin(1.5 * x) + 0.7)
     assert found.values == pytest.approx({"a": 1.5, "b": -0.7}, rel=1e-5)
 
 
@@ -69,7 +69,7 @@ def record(tmp_path):
             "hysteresis_loss = 0 rad cannot be the start value .* in the system file",
         ),
         ("", "--free link.J --hold-out 1", r"hold_out = 1 is outside \[0, 0.9\]: share of the record"),
-        ("", "--free link.J --columns link.q=x", "--columns 'link.q=x': expected NAME=HEADING with one of"),
+        ("", "--free link.J --columns link.q=x", "--columns 'link.q=x': expected NAME=HEADING, with a "),
         ("", "--free link.J --out a-b.toml", "name 'a-b' is not a model identifier"),
         (
             HEAD.replace("link.phi", "link.phj") + ROWS,
@@ -94,7 +94,7 @@ def record(tmp_path):
             "--free link.J",
             "link.phi starts at 0.0349.*add link.phi",
         ),
-        (HEAD + "0,0,0\n", "--free link.J", "has 1 points, at least 8 are needed"),
+        (HEAD + "0,0,0\n", "--free link.J", "has 1 rows of numbers, at least 8 are needed"),
     ],
 )
 def test_wrong_input_is_one_line(record, text, options, refusal, capsys):
@@ -111,7 +111,9 @@ def test_the_written_system_has_the_fitted_values(tmp_path):
     path = system_records.write_system(tmp_path / "start", LINEAR)
     model = assemble_system(load_system("robot_joint"))
     values = {"link.J": 0.5, "drive.surface.G": 2e-9}
-    fitted = model.make_parameters(model.make_model()).with_values(values, "measured", "fitted to x.csv")
+    fitted = model.make_system_parameter_file(model.make_fmu_model()).with_values(
+        values, "measured", "fitted to x.csv"
+    )
     units = {"link.J": "kg.m2", "drive.surface.G": "m", "link.phi": "rad"}
     written = tmp_path / "new.toml"
     written.write_text(format_fitted_system(path, fitted, units, written))
@@ -139,8 +141,8 @@ class TestFits:
         fit, truth = system_records.fit_case(name, 1, tmp_path, 0.2), CASES[name][1]
         assert fit.rejection_reason() is None
         for u in fit.solution.unknowns:
-            low, high = map(u.to_search, fit.confidence_intervals[u.name])
-            assert abs(u.to_search(truth[u.name]) - 0.5 * (low + high)) < high - low
+            low, high = map(u.to_search_variable, fit.confidence_intervals[u.parameter_name])
+            assert abs(u.to_search_variable(truth[u.parameter_name]) - 0.5 * (low + high)) < high - low
             assert high - low < 0.1
         for column in {name for name in fit.facts if name.startswith("residual.")}:
             held_out = fit.facts[column.replace("residual.", "held_out.")][0]
@@ -176,9 +178,9 @@ class TestFits:
             found, stated = (np.array(re.findall(number, text), float) for text in (line, expected))
             np.testing.assert_allclose(found, stated, rtol=5e-4)
         fitted = read_system(tmp_path / "fitted_arm.toml")
-        values = fitted.list_values
+        values = fitted.stated_values
         assert values["link.J"] == pytest.approx(LINEAR["link.J"], rel=0.01)
-        assert fitted.components["drive"].sources["d"].startswith("fitted to record.csv, ")
+        assert fitted.components["drive"].value_sources["d"].startswith("fitted to record.csv, ")
 
     def test_a_system_that_cannot_follow_is_not_written(self, tmp_path, capsys):
         path, record = system_records.make_chirp_record(tmp_path, 1)
@@ -197,6 +199,6 @@ class TestFits:
         fit = jointfmu.fit_system(path, record, "link.J")
         assert "link.J" in str(fit)
         assert (
-            read_system(fit.save(tmp_path / "saved.toml")).list_values["link.J"]
+            read_system(fit.save(tmp_path / "saved.toml")).stated_values["link.J"]
             == fit.outcome.solution.values["link.J"]
         )

@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 from fmpy.validation import validate_fmu
 from jointfmu_fmu_src.proof.series import TimeSeries
-from jointfmu_fmu_src.proof.standard import REFERENCE_FOLDER
+from jointfmu_fmu_src.proof.standard import REFERENCE_FILE_FOLDER
 from jointfmu_tools.run.host import open_instance, unpack_fmu
-from jointfmu_tools.run.proof.manifest import RelatedFiles
+from jointfmu_tools.run.proof.manifest import RelatedFileReader
 from jointfmu_tools.run.proof.run import prove
 from jointfmu_tools.systems.fmu import proof
 from jointfmu_tools.systems.fmu.assembly import assemble_system
-from jointfmu_tools.systems.fmu.build import build_system
+from jointfmu_tools.systems.fmu.build import build_system_fmus
 from jointfmu_tools.systems.fmu.code import generate_sources
 from jointfmu_tools.systems.system import load_system, load_systems, read_system
 from proofs import ECOS, LIBCOSIM, copy, replaced
@@ -47,7 +47,7 @@ def made(name, out):
     shipped = load_system(name)
     ends = replace(shipped, stop_time=STOP.get(name, max(shipped.stop_time, TURNED)))
     versions = VERSIONS.get(name, "23")
-    paths = build_system(assemble_system(ends), out, versions, (fmpy.platform_tuple,))
+    paths = build_system_fmus(assemble_system(ends), out, versions, (fmpy.platform_tuple,))
     return dict(zip(versions, paths, strict=True))
 
 
@@ -81,10 +81,10 @@ def test_components_that_differ_in_data_share_their_code():
     assert [name for name in files if name.endswith("harmonic_drive.c")] == [f"{drives}harmonic_drive.c"]
     assert len([name for name in files if re.fullmatch(rf"{drives}data\d*\.c", name)]) == 6
     column = assemble_system(load_system("bolted_column"))
-    (joint,) = (c for c in column.components if c.model.name == "BoltedJoint")
-    wider = joint.parameters.with_values({"pattern.hole_diameter": 0.02}, "user", "test")
-    for parameters, count in ((joint.parameters, 1), (wider, 2)):
-        other = replace(joint, name="other", parameters=parameters)
+    (joint,) = (c for c in column.components if c.fmu_model.name == "BoltedJoint")
+    wider = joint.parameter_file.with_values({"pattern.hole_diameter": 0.02}, "user", "test")
+    for parameters, count in ((joint.parameter_file, 1), (wider, 2)):
+        other = replace(joint, name="other", parameter_file=parameters)
         files = generate_sources(replace(column, components=[other, *column.components]))
         assert len([name for name in files if name.endswith("_bolted_joint.c")]) == count
 
@@ -106,7 +106,7 @@ def test_description_is_valid(joint, version):
 def test_any_step_passes_the_proof_in_each_importer(files_of, name, importer, version):
     """All outputs at 1 and 10 ms steps, within the 0.5 % that docs/systems_explanation.md states."""
     found = prove(files_of(name)[version], importer)
-    assert found.failures == []
+    assert found.failure_messages == []
     assert found.executed_experiment_count == (3 if importer == "fmpy" else 2)
 
 
@@ -117,10 +117,10 @@ def test_references_of_the_proof_are_those_of_model_exchange(files_of, name):
     files, output = files_of(name), LAST[name]
     if name == "six_axis_robot":  # fmpy's master has nothing in it that the robot's one joint has not
         found = prove(files["3"])
-        assert (found.failures, found.executed_experiment_count) == ([], 3)
+        assert (found.failure_messages, found.executed_experiment_count) == ([], 3)
         return
     stop = max(load_systems()[name].stop_time, TURNED)
-    references = RelatedFiles(files["2"]).read_experiments()[0].references
+    references = RelatedFileReader(files["2"]).read_experiments()[0].reference_results
     expected = exchange(files["2"], [output], stop, 1e-9, stop / 20_000)
     due = np.interp(references.time, expected["time"], expected[output])
     assert np.abs(references.columns[output] - due).max() < 2e-4 * np.abs(due).max()  # of the memory's steps
@@ -142,7 +142,7 @@ def test_references_of_the_proof_are_those_of_model_exchange(files_of, name):
 def test_scales_decide_what_counts(joint, tmp_path, scale, refused):
     old = re.search(
         rb'name="link.phi" value="([^"]*)"',
-        zipfile.ZipFile(joint["2"]).read(f"{REFERENCE_FOLDER}/co-simulation.exp"),
+        zipfile.ZipFile(joint["2"]).read(f"{REFERENCE_FILE_FOLDER}/co-simulation.exp"),
     )
     change = replaced("co-simulation.exp", old[0], old[0].replace(old[1], scale))
     path = copy(Path(joint["2"]), tmp_path / "other.fmu", change)
@@ -150,13 +150,13 @@ def test_scales_decide_what_counts(joint, tmp_path, scale, refused):
         with pytest.raises(ValueError, match=re.escape(refused)):
             prove(path)
     else:
-        assert [text for text in prove(path).failures if "link.phi" in text]
+        assert [text for text in prove(path).failure_messages if "link.phi" in text]
 
 
 @pytest.mark.parametrize(("sensitive", "end"), [(3.0, 2.0), (0.505, 0.5), (0.5, 0.49)])
 def test_the_proof_ends_before_the_motion_is_too_sensitive(monkeypatch, sensitive, end):
     """The proof ends where a tool's tolerance gives other results than the tolerance of the references."""
-    model = assemble_system(load_system("robot_joint")).make_model()
+    model = assemble_system(load_system("robot_joint")).make_fmu_model()
 
     def exchanged(model, fmu, times, tolerance):
         columns = {v.name: times + 1.0 for v in model.outputs}
@@ -164,7 +164,7 @@ def test_the_proof_ends_before_the_motion_is_too_sensitive(monkeypatch, sensitiv
             columns["link.phi"] = np.where(times < sensitive - 1e-9, times + 1.0, 0.0)
         return TimeSeries(times, columns)
 
-    monkeypatch.setattr(proof, "_simulate", exchanged)
+    monkeypatch.setattr(proof, "_simulate_outputs", exchanged)
     members = proof.make_proof_files(model, 2.0, 5e-4, Path())
     (text,) = (content.decode() for path, content in members.items() if path.endswith("model-exchange.exp"))
     assert f'stopTime="{end:g}"' in text

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from clients import needs
 from jointfmu_tools.studies.uncertainty import journal
-from jointfmu_tools.studies.uncertainty.sweep import format_runs_csv
+from jointfmu_tools.studies.uncertainty.sweep import format_quantiles_csv
 
 from jointfmu.files.text import replace_unprintable
 
@@ -77,7 +77,7 @@ def written(folder: Path, *lines: bytes) -> Path:
 def refused(folder: Path) -> str:
     """Error message of both readers of a journal: one printable line."""
     with pytest.raises(ValueError, match=r"runs\.jsonl") as said:
-        journal.Journal(folder, 8).__enter__()
+        journal.RunJournal(folder, 8).__enter__()
     text = str(said.value)
     assert replace_unprintable(text) == text
     assert len(text.removeprefix(str(folder))) < 400
@@ -95,12 +95,12 @@ def test_a_row_that_no_study_wrote_is_named_in_one_line(line: object, tmp_path: 
 
 def test_rows_of_a_study_are_read(tmp_path: Path) -> None:
     path = written(tmp_path / "out", json.dumps(GOOD).encode(), json.dumps(FAILED).encode())
-    with journal.Journal(path.parent, 8) as held:
+    with journal.RunJournal(path.parent, 8) as held:
         assert (held.finished_runs, held.failed_count) == ({0, 1}, 1)
         held.append_entries({**GOOD, "run": 5})
-    assert [one["run"] for one in journal.read_entries(path.parent)] == [0, 1, 5]
+    assert [one["run"] for one in journal.read_journal_entries(path.parent)] == [0, 1, 5]
     units = {"tau": "N.m", "K_WTS": "N.m/rad"}
-    assert format_runs_csv(path.parent, units).splitlines()[1].startswith("0.0,1.0,")
+    assert format_quantiles_csv(path.parent, units).splitlines()[1].startswith("0.0,1.0,")
 
 
 @needs("Linux or macOS")
@@ -108,21 +108,21 @@ def test_a_pipe_in_its_place_is_refused(tmp_path: Path) -> None:
     for name in (journal.RUNS_FILE, journal.STUDY_FILE):
         os.mkfifo(tmp_path / name)
     with pytest.raises(ValueError, match=r"runs\.jsonl: is a pipe, not a regular file"):
-        journal.Journal(tmp_path, 8).__enter__()
+        journal.RunJournal(tmp_path, 8).__enter__()
     with pytest.raises(ValueError, match=r"study\.json: is a pipe, not a regular file"):
-        journal.claim_folder(tmp_path, {"fmu": "a.fmu"})
+        journal.claim_study_folder(tmp_path, {"fmu": "a.fmu"})
 
 
 @pytest.mark.parametrize("text", ["[1, 2]", "null", 100_000 * "[", "{", "\x1b"])
 def test_a_study_that_is_none_is_refused(text: str, tmp_path: Path) -> None:
     (tmp_path / journal.STUDY_FILE).write_text(text)
     with pytest.raises(ValueError, match=r"study.json: is not a study"):
-        journal.claim_folder(tmp_path, {"fmu": "a.fmu"})
+        journal.claim_study_folder(tmp_path, {"fmu": "a.fmu"})
 
 
 @pytest.mark.parametrize("held", [{"fmu": ESC}, {ESC: 1, "fmu": "a.fmu"}])
 def test_a_foreign_study_is_named_in_printable_text(held: dict[str, object], tmp_path: Path) -> None:
     (tmp_path / journal.STUDY_FILE).write_text(json.dumps(held))
     with pytest.raises(ValueError, match="holds another study") as said:
-        journal.claim_folder(tmp_path, {"fmu": "a.fmu"})
+        journal.claim_study_folder(tmp_path, {"fmu": "a.fmu"})
     assert replace_unprintable(str(said.value)) == str(said.value)

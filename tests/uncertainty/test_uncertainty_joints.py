@@ -12,8 +12,8 @@ from joint_cases import JOINTS
 from jointfmu_tools import cli
 from jointfmu_tools.joints.bolted_joint.gross_slip import loss_factor
 from jointfmu_tools.studies.uncertainty import propagate
-from jointfmu_tools.studies.uncertainty.problem import state_problem
-from jointfmu_tools.studies.uncertainty.runs import Execution
+from jointfmu_tools.studies.uncertainty.problem import define_joint_study
+from jointfmu_tools.studies.uncertainty.runs import StudyExecution
 from scipy.integrate import quad
 
 from jointfmu.joints import KINDS
@@ -27,10 +27,10 @@ pytestmark = pytest.mark.slow
 
 def sample_of(task, points, i):
     """Values of sample i by column, and its parameter set and load factor, built with all checks."""
-    settings = dict(task.list_runs(points)[i])
-    columns = task.evaluator.evaluate(settings)
+    settings = dict(task.list_run_settings(points)[i])
+    columns = task.run_evaluator.evaluate_sample(settings)
     settings.pop(task.ramped_input.name, None)
-    file = task.evaluator.file
+    file = task.run_evaluator.parameter_file
     joint = build_parameter_set(type(file.values), {**file.values_by_name, **settings})
     return columns, joint
 
@@ -40,14 +40,14 @@ def sample_of(task, points, i):
 )
 def test_outputs_are_those_of_the_python_law(joint, study):
     given, count = JOINTS[joint].studies[study]
-    task = state_problem(load_default(joint), given, None, 9)
-    points = propagate.sample_designs(task, 256, 5)[0]
-    curves = task.evaluator.curves
-    model = KINDS[joint].find_model(curves.model)
+    task = define_joint_study(load_default(joint), given, None, 9)
+    points = propagate.draw_independent_point_sets(task, 256, 5)[0]
+    curves = task.run_evaluator.load_curves
+    model = KINDS[joint].find_model(curves.fmu_name)
     for i in range(min(count, 8)):
         columns, parameters = sample_of(task, points, i)
-        spring = model.tabulate(replace(parameters, **curves.settings))
-        stated = {v.name: 0.0 for v in model.inputs} | dict(curves.other_inputs(parameters))
+        spring = model.tabulate(replace(parameters, **curves.fixed_parameters))
+        stated = {v.name: 0.0 for v in model.inputs} | dict(curves.fixed_inputs(parameters))
         for row, load in enumerate(columns[task.ramped_input.name]):
             exact = model.evaluate(spring, stated | {task.ramped_input.name: float(load)})
             for variable in curves.outputs:
@@ -63,10 +63,10 @@ def test_outputs_are_those_of_the_python_law(joint, study):
 def test_approach_and_loss_factor_of_the_bolted_joint(law):
     """The results agree with quadrature of the compliance of patches and nodes, and with the loop of the
     whole interface."""
-    task = state_problem(load_default("bolted_joint", law), {"mu": "0.1..0.2", "H": "+-5%"}, None, 5)
-    columns, joint = sample_of(task, propagate.sample_designs(task, 4, 5)[0], 0)
+    task = define_joint_study(load_default("bolted_joint", law), {"mu": "0.1..0.2", "H": "+-5%"}, None, 5)
+    columns, joint = sample_of(task, propagate.draw_independent_point_sets(task, 4, 5)[0], 0)
     joint = replace(with_rigid_members(joint), embedding=0.0)
-    spring = BoltedJointSpring.for_joint(joint)
+    spring = BoltedJointSpring.from_joint(joint)
     points = spring.points
 
     def rate(log):
@@ -88,8 +88,8 @@ def test_approach_and_loss_factor_of_the_bolted_joint(law):
 
 def test_interpolated_outputs_of_a_long_ramp_are_those_of_the_fmu():
     given = {"surface.D": "1.38..1.46", "preload": "normal(12%)"}
-    long, short = (state_problem(load_default("bolted_joint"), given, None, n) for n in (201, 5))
-    points = propagate.sample_designs(short, 4, 5)[0]
+    long, short = (define_joint_study(load_default("bolted_joint"), given, None, n) for n in (201, 5))
+    points = propagate.draw_independent_point_sets(short, 4, 5)[0]
     fine, exact = (sample_of(task, points, 1)[0] for task in (long, short))
     for name, values in exact.items():
         assert fine[name][::50] == pytest.approx(values, rel=1e-5), name
@@ -97,22 +97,22 @@ def test_interpolated_outputs_of_a_long_ramp_are_those_of_the_fmu():
 
 def test_pattern_of_the_bolts_may_be_uncertain():
     """The FMU does not expose the pattern: the joint is opened again for each sample."""
-    task = state_problem(load_default("bolted_joint"), {"pattern.decay_length": "+-20%"}, None, 4)
-    points = propagate.sample_designs(task, 2, 0)[0]
+    task = define_joint_study(load_default("bolted_joint"), {"pattern.decay_length": "+-20%"}, None, 4)
+    points = propagate.draw_independent_point_sets(task, 2, 0)[0]
     found = propagate.compute_bands(task, points)
-    assert found.refused_samples.count == 0
+    assert found.refused_samples.refused_count == 0
     columns, joint = sample_of(task, points, 1)
-    exact = BoltedJointSpring.for_joint(joint).evaluate(30e3, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    exact = BoltedJointSpring.from_joint(joint).evaluate(30e3, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     assert columns["K_zz"][-1] == pytest.approx(exact["K_zz"], rel=1e-8)
 
 
 def test_slip_force_has_the_band_of_friction():
-    task = state_problem(load_default("bolted_joint"), {"mu": "0.1..0.3"}, None, 2)
-    points = propagate.sample_designs(task, 1024, 0)[0]
-    found = propagate.compute_bands(task, points, Execution(workers=1))
+    task = define_joint_study(load_default("bolted_joint"), {"mu": "0.1..0.3"}, None, 2)
+    points = propagate.draw_independent_point_sets(task, 1024, 0)[0]
+    found = propagate.compute_bands(task, points, StudyExecution(process_count=1))
     slip, mu = found.quantiles["slip_force"][:, -1], 0.1 + 0.2 * np.array(propagate.QUANTILES)
     assert slip == pytest.approx(
-        mu / task.evaluator.file.values.mu * found.nominal["slip_force"][-1], rel=2e-3
+        mu / task.run_evaluator.parameter_file.values.mu * found.nominal_outputs["slip_force"][-1], rel=2e-3
     )
     assert np.ptp(found.quantiles["K_zz"][:, -1]) == 0.0
     # loss goes about as 1/mu under an equal shear, faster as more slips
@@ -122,19 +122,21 @@ def test_slip_force_has_the_band_of_friction():
 
 
 def test_nominal_is_the_parameter_file():
-    task = state_problem(load_default("gear_contact"), {"A_0": "+-1%", "surface1.G": 3e-10}, None, 4)
+    task = define_joint_study(load_default("gear_contact"), {"A_0": "+-1%", "surface1.G": 3e-10}, None, 4)
     changed = load_default("gear_contact").with_values({"surface1.G": 3e-10}, "user", "")
-    found = propagate.compute_bands(task, propagate.sample_designs(task, 4, 0)[0])
+    found = propagate.compute_bands(task, propagate.draw_independent_point_sets(task, 4, 0)[0])
     spring = KINDS["gear_contact"].models[0].tabulate(changed.values)
-    assert found.nominal["K_N"][1:] == pytest.approx(spring.evaluate(task.loads[1:])["K_N"], rel=1e-9)
+    assert found.nominal_outputs["K_N"][1:] == pytest.approx(spring.evaluate(task.loads[1:])["K_N"], rel=1e-9)
 
 
 def test_refused_samples_are_counted_with_the_reason():
     """Eccentricity normal(5e-6, 5e-6): 15.87 % are negative."""
-    task = state_problem(load_default("harmonic_drive"), {"eccentricity": "normal(5e-6, 5e-6)"}, None, 3)
-    found = propagate.compute_bands(task, propagate.sample_designs(task, 256, 0)[0])
-    assert found.refused_samples.count == pytest.approx(0.158655 * 256, abs=1.5)  # a balanced sequence
-    assert "is outside [0, 0.001): installation eccentricity" in found.refused_samples.reason
+    task = define_joint_study(load_default("harmonic_drive"), {"eccentricity": "normal(5e-6, 5e-6)"}, None, 3)
+    found = propagate.compute_bands(task, propagate.draw_independent_point_sets(task, 256, 0)[0])
+    assert found.refused_samples.refused_count == pytest.approx(
+        0.158655 * 256, abs=1.5
+    )  # a balanced sequence
+    assert "is outside [0, 0.001): installation eccentricity" in found.refused_samples.refusal_message
     assert found.refused_samples.first_refused_sample["eccentricity"] < 0.0
     assert np.all(np.isfinite(found.quantiles["K_WTS"]))
 
@@ -142,32 +144,35 @@ def test_refused_samples_are_counted_with_the_reason():
 def test_samples_that_only_the_law_refuses():
     """The law alone refuses samples whose dimension is so close to 1 that the critical spot area
     overflows."""
-    task = state_problem(load_default("bolted_joint"), {"surface.D": "1.0001..1.3"}, None, 3)
-    points = propagate.sample_designs(task, 256, 0)[0]
+    task = define_joint_study(load_default("bolted_joint"), {"surface.D": "1.0001..1.3"}, None, 3)
+    points = propagate.draw_independent_point_sets(task, 256, 0)[0]
     found = propagate.compute_bands(task, points)
-    runs, law = task.list_runs(points), KINDS["bolted_joint"]
-    for i in list(found.sampled_outputs.errors)[:3]:
-        values = {**task.evaluator.file.values_by_name, **runs[i]}
+    runs, law = task.list_run_settings(points), KINDS["bolted_joint"]
+    for i in list(found.sampled_outputs.error_messages)[:3]:
+        values = {**task.run_evaluator.parameter_file.values_by_name, **runs[i]}
         with pytest.raises(ValueError, match=r"representable|no stiffness"):
             law.models[0].tabulate(build_parameter_set(law.default_parameter_class, values))
-    assert 0 < found.refused_samples.count < 200
-    assert "D" in found.refused_samples.reason
+    assert 0 < found.refused_samples.refused_count < 200
+    assert "D" in found.refused_samples.refusal_message
 
 
 def test_loads_beyond_the_table_are_refused():
     """normal(29, 1) near the end of the table at 30 N.m: 15.87 % are above."""
     given = {"surface.D": "+-1%", "tau": "normal(29, 1)"}
-    task = state_problem(load_default("harmonic_drive"), given, None, 3)
-    found = propagate.compute_bands(task, propagate.sample_designs(task, 256, 0)[0])
-    assert found.refused_samples.count == pytest.approx(0.158655 * 256, abs=1.5)
-    assert "is outside (0, 30]: up to the end of the tabulated law" in found.refused_samples.reason
+    task = define_joint_study(load_default("harmonic_drive"), given, None, 3)
+    found = propagate.compute_bands(task, propagate.draw_independent_point_sets(task, 256, 0)[0])
+    assert found.refused_samples.refused_count == pytest.approx(0.158655 * 256, abs=1.5)
+    assert "is outside (0, 30]: up to the end of the tabulated law" in found.refused_samples.refusal_message
 
 
 def test_all_refused():
     given = {"eccentricity": "0.9e-3..0.99e-3"}  # allowed each for itself, but the pair loses contact
-    task = state_problem(load_default("harmonic_drive"), given, None, 3)
-    with pytest.raises(RuntimeError, match="all 8 samples are rejected; the first: eccentricity = "):
-        propagate.compute_bands(task, propagate.sample_designs(task, 8, 0)[0])
+    task = define_joint_study(load_default("harmonic_drive"), given, None, 3)
+    with pytest.raises(
+        RuntimeError,
+        match="all 8 samples are rejected, state narrower distributions; the first: eccentricity = ",
+    ):
+        propagate.compute_bands(task, propagate.draw_independent_point_sets(task, 8, 0)[0])
 
 
 RUN = ("uncertainty", "harmonic_drive", "--set", "surface.D=2.45..2.6", "surface.G=lognormal(20%)")
@@ -204,7 +209,7 @@ def test_command(tmp_path, capsys):
     assert "varied: surface.D = 2.45..2.6, surface.G = lognormal(20%)\n" in text
 
 
-def test_what_is_zero_is_left_out_and_what_moves_nothing_is_said(tmp_path, capsys):
+def test_zero_outputs_are_left_out_and_parameters_without_effect_are_named(tmp_path, capsys):
     plot = tmp_path / "bands.svg"
     few = ["--samples", "16", "--points", "3"]
     given = ["uncertainty", "bolted_joint", "--set", "H=+-5%"]
@@ -259,7 +264,7 @@ def test_study_file(tmp_path, capsys):
         (["bolted_joint", "--set", "H=+-5%", "--to", "-3"], "to = -3 N is outside (0, "),
         (["harmonic_drive", "--set", "ratio=+-5%", "--to", "31"], "to = 31 N.m is outside (0, 30]"),
         (["bolted_joint", "--set", "H=+-5%", "preload=-5"], "preload = -5 N is outside (0, "),
-        (["bolted_joint", "--set", "H=+-5%", "preload=9e3", "--to", "5"], "is also the ramped input"),
+        (["bolted_joint", "--set", "H=+-5%", "preload=9e3", "--to", "5"], "is set, so there is no ramp"),
         (["bolted_joint", "--set", "H=+-5%", "--points", "1"], "points = 1 is outside [2, 10000]"),
         (["bolted_joint", "--set", "H=+-5%", "--samples", "1"], "samples = 1 is outside [2, "),
         (["bolted_joint", "--set", "H=+-5%", "--seed", "-1"], "seed = -1 is outside [0, inf)"),
@@ -282,7 +287,7 @@ def test_refused_arguments(arguments, words, capsys):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("schema = 2\n", "schema = 2, allowed is 1"),
+        ("schema = 2\n", "schema = 2, expected the line schema = 1"),
         ("schema = 1\n", "parameters = None, expected a table"),
         ("schema = 1\nother = 2\n[parameters]\nH = 1\n", "unknown entry 'other'"),
         ("schema = 1\n[parameters]\nH = [1, 2]\n", "H = [1, 2], expected a number or a text"),
@@ -304,6 +309,6 @@ def test_every_parameter_can_be_uncertain():
         names = [n for n, v in values.items() if isinstance(v, float) and v and n not in counted]
         names = [n for n in names if not n.startswith("pattern.")]  # one by one, see above
         given = {name: "+-1%" for name in names if name != "traction_ratio"}
-        task = state_problem(load_default(joint), given, None, 3)
-        found = propagate.compute_bands(task, propagate.sample_designs(task, 4, 0)[0])
-        assert np.any(found.sampled_outputs.accepted), joint
+        task = define_joint_study(load_default(joint), given, None, 3)
+        found = propagate.compute_bands(task, propagate.draw_independent_point_sets(task, 4, 0)[0])
+        assert np.any(found.sampled_outputs.accepted_mask), joint

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from jointfmu_tools.studies.uncertainty import propagate, study, worker
 from jointfmu_tools.studies.uncertainty.curves import spline_weights
-from jointfmu_tools.studies.uncertainty.problem import state_problem
-from jointfmu_tools.studies.uncertainty.runs import Execution, evaluate_runs
+from jointfmu_tools.studies.uncertainty.problem import define_joint_study
+from jointfmu_tools.studies.uncertainty.runs import StudyExecution, evaluate_runs
 from jointfmu_tools.studies.uncertainty.study import parse_distribution
 from scipy import stats
 from scipy.interpolate import CubicSpline
@@ -88,28 +88,28 @@ def test_powers_of_two():
 
 
 def test_design_is_seeded_and_balanced():
-    one, two = (study.unit_cube_points(256, 3, seed) for seed in (1, 2))
-    assert np.array_equal(one, study.unit_cube_points(256, 3, 1))
+    one, two = (study.draw_unit_cube_points(256, 3, seed) for seed in (1, 2))
+    assert np.array_equal(one, study.draw_unit_cube_points(256, 3, 1))
     assert not np.array_equal(one, two)
     for column in one.T:  # a Sobol' sequence of 2^k points has one in each of 2^k equal intervals
         assert np.array_equal(np.sort(np.floor(256 * column)), np.arange(256))
 
 
-class LinearGear(worker.JointRamp):
+class LinearGear(worker.JointRampEvaluator):
     """Gear contact whose K_N is linear in mu, traction_ratio and load, so that its distribution is known."""
 
     runs_per_process = 10**9
 
-    def evaluate(self, settings):
-        values = {**self.file.values_by_name, **settings}
+    def evaluate_sample(self, settings):
+        values = {**self.parameter_file.values_by_name, **settings}
         load = settings.get("f")
         factor = 1.0 if load is None else load if self.load_is_relative else load / self.loads[-1]
-        rows = slice(None) if self.load_indices is None else self.load_indices
+        rows = slice(None) if self.evaluated_load_indices is None else self.evaluated_load_indices
         K_N = factor * self.loads[rows] * (2.0 * values["mu"] + values["traction_ratio"])
         return {"K_N": K_N, "s_rel": 0.0 * K_N}
 
 
-class SmallJobs(worker.JointRamp):
+class SmallJobs(worker.JointRampEvaluator):
     """Joint of which a process and a job do few runs."""
 
     runs_per_process, runs_per_job = 4, 3
@@ -121,15 +121,15 @@ def as_evaluator(cls, one):
 
 
 def linear_problem(*arguments):
-    task = state_problem(load_default("gear_contact"), *arguments)
-    return replace(task, evaluator=as_evaluator(LinearGear, task.evaluator))
+    task = define_joint_study(load_default("gear_contact"), *arguments)
+    return replace(task, run_evaluator=as_evaluator(LinearGear, task.run_evaluator))
 
 
 def test_bands_of_a_linear_output():
     """2 a + b of two normal parameters is normal."""
     given = {"mu": "normal(5, 0.3)", "traction_ratio": "normal(0.5, 0.05)"}
     task = linear_problem(given, 100.0, 5)
-    A, B = propagate.sample_designs(task, 2**14, 0)
+    A, B = propagate.draw_independent_point_sets(task, 2**14, 0)
     found = propagate.compute_bands(task, A)
     law = stats.norm(10.5, np.hypot(0.6, 0.05))
     for q, row in zip(propagate.QUANTILES, found.quantiles["K_N"], strict=True):
@@ -137,8 +137,8 @@ def test_bands_of_a_linear_output():
         assert row == pytest.approx(found.loads * law.ppf(q), rel=2e-3)
     assert found.mean["K_N"] == pytest.approx(found.loads * 10.5, rel=1e-4)
     assert found.standard_deviation["K_N"] == pytest.approx(found.loads * law.std(), rel=2e-3)
-    assert found.refused_samples.count == 0
-    indices = propagate.compute_sensitivity(task, found, A[:4096], B[:4096]).outputs["K_N"]
+    assert found.refused_samples.refused_count == 0
+    indices = propagate.compute_sensitivity(task, found, A[:4096], B[:4096]).indices_by_output["K_N"]
     exact = np.array([0.36, 0.0025]) / 0.3625
     assert np.all(np.abs(indices.first_order - exact) < 0.01)  # Sobol' sequence of 4096
     assert np.all(np.abs(indices.total_order - exact) < 0.01)
@@ -146,26 +146,26 @@ def test_bands_of_a_linear_output():
 
 def test_an_uncertain_load_scales_the_ramp():
     task = linear_problem({"f": "+-20%"}, 100.0, 3)
-    found = propagate.compute_bands(task, propagate.sample_designs(task, 4096, 0)[0])
-    nominal = found.nominal["K_N"]
+    found = propagate.compute_bands(task, propagate.draw_independent_point_sets(task, 4096, 0)[0])
+    nominal = found.nominal_outputs["K_N"]
     assert found.quantiles["K_N"][1] == pytest.approx(nominal * 0.82, rel=1e-3)
     assert found.quantiles["K_N"][-2] == pytest.approx(nominal * 1.18, rel=1e-3)
     at = linear_problem({"f": "50..150"}, None, 3)
     assert at.loads.tolist() == [100.0]
-    found = propagate.compute_bands(at, propagate.sample_designs(at, 4096, 0)[0])
+    found = propagate.compute_bands(at, propagate.draw_independent_point_sets(at, 4096, 0)[0])
     assert found.quantiles["K_N"][:, 0] == pytest.approx(
-        found.nominal["K_N"] * (0.5 + np.array(propagate.QUANTILES)), rel=1e-3
+        found.nominal_outputs["K_N"] * (0.5 + np.array(propagate.QUANTILES)), rel=1e-3
     )
 
 
 def test_results_do_not_depend_on_order_and_processes():
     """The numbers of a sample are equal to the bit after any other sample."""
-    task = state_problem(load_default("bolted_joint"), {"H": "+-5%", "mu": "0.1..0.2"}, None, 4)
-    runs = task.list_runs(propagate.sample_designs(task, 8, 0)[0])
-    one = evaluate_runs(task.evaluator, runs, task.units, 4).outputs
-    back = evaluate_runs(task.evaluator, runs[::-1], task.units, 4).outputs
-    small = as_evaluator(SmallJobs, task.evaluator)
-    two = evaluate_runs(small, runs, task.units, 4, Execution(workers=2)).outputs
+    task = define_joint_study(load_default("bolted_joint"), {"H": "+-5%", "mu": "0.1..0.2"}, None, 4)
+    runs = task.list_run_settings(propagate.draw_independent_point_sets(task, 8, 0)[0])
+    one = evaluate_runs(task.run_evaluator, runs, task.output_units, 4).output_arrays
+    back = evaluate_runs(task.run_evaluator, runs[::-1], task.output_units, 4).output_arrays
+    small = as_evaluator(SmallJobs, task.run_evaluator)
+    two = evaluate_runs(small, runs, task.output_units, 4, StudyExecution(process_count=2)).output_arrays
     for name, values in one.items():
         assert np.array_equal(values, back[name][:, ::-1])
         assert np.array_equal(values, two[name])
@@ -180,7 +180,7 @@ ISHIGAMI_FIRST, ISHIGAMI_TOTAL = (0.31390519, 0.44241114, 0.0), (0.55758886, 0.4
 
 
 def designs(n, d, seed):
-    points = 2.0 * np.pi * study.unit_cube_points(n, 2 * d, seed).T - np.pi
+    points = 2.0 * np.pi * study.draw_unit_cube_points(n, 2 * d, seed).T - np.pi
     A, B = points[:d], points[d:]
     mixed = np.stack([np.where(np.arange(d)[:, None] == i, B, A) for i in range(d)])
     return A, B, mixed
@@ -188,7 +188,7 @@ def designs(n, d, seed):
 
 def test_ishigami():
     A, B, mixed = designs(4096, 3, 0)
-    found = propagate.sobol_indices_of(
+    found = propagate.estimate_sobol_indices(
         ishigami(A)[None], ishigami(B)[None], np.stack([ishigami(m)[None] for m in mixed])
     )
     assert found.first_order[0] == pytest.approx(ISHIGAMI_FIRST, abs=0.01)  # seen: 0.003
@@ -201,7 +201,7 @@ def test_confidence_intervals_of_independent_samples():
     for _ in range(100):
         A, B = rng.uniform(-np.pi, np.pi, (2, 3, 1024))
         mixed = np.stack([np.where(np.arange(3)[:, None] == i, B, A) for i in range(3)])
-        found = propagate.sobol_indices_of(
+        found = propagate.estimate_sobol_indices(
             ishigami(A)[None], ishigami(B)[None], np.stack([ishigami(m)[None] for m in mixed])
         )
         hits[0] += np.abs(found.first_order[0] - ISHIGAMI_FIRST) <= found.first_order_half_width[0]
@@ -213,8 +213,8 @@ def test_refused_rows_count_for_nothing():
     A, B, mixed = designs(1024, 3, 1)
     f_A, f_B, f_AB = ishigami(A)[None], ishigami(B)[None], np.stack([ishigami(m)[None] for m in mixed])
     keep = np.arange(1024) < 512  # the first half is a design of its own
-    some = propagate.sobol_indices_of(f_A[:, keep], f_B[:, keep], f_AB[..., keep])
+    some = propagate.estimate_sobol_indices(f_A[:, keep], f_B[:, keep], f_AB[..., keep])
     f_A[:, ~keep] = np.nan
-    holes = propagate.sobol_indices_of(f_A, f_B, f_AB)
+    holes = propagate.estimate_sobol_indices(f_A, f_B, f_AB)
     for name in ("first_order", "total_order", "first_order_half_width", "total_half_width"):
         assert getattr(holes, name) == pytest.approx(getattr(some, name), rel=1e-10)

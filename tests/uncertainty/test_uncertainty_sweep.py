@@ -21,10 +21,10 @@ from conftest import refused_line, run_host
 from jointfmu_tools import cli
 from jointfmu_tools.run.ramps import ramp
 from jointfmu_tools.studies.uncertainty import journal
-from jointfmu_tools.studies.uncertainty.problem import state_problem
-from jointfmu_tools.studies.uncertainty.runs import Execution, evaluate_runs
-from jointfmu_tools.studies.uncertainty.study import unit_cube_points
-from jointfmu_tools.studies.uncertainty.sweep import state_fmu_problem
+from jointfmu_tools.studies.uncertainty.problem import define_joint_study
+from jointfmu_tools.studies.uncertainty.runs import StudyExecution, evaluate_runs
+from jointfmu_tools.studies.uncertainty.study import draw_unit_cube_points
+from jointfmu_tools.studies.uncertainty.sweep import define_fmu_study
 from jointfmu_tools.studies.uncertainty.worker import LoadRamp
 
 from jointfmu.parameters import format_parameter_file, load_default
@@ -76,15 +76,17 @@ DEPRECATED = (
 
 def do_runs(task, runs, out, **execution):
     """Runs of an FMU that are stored in a folder."""
-    return evaluate_runs(task.evaluator, runs, task.units, task.loads.size, Execution(out, **execution))
+    return evaluate_runs(
+        task.run_evaluator, runs, task.output_units, task.loads.size, StudyExecution(out, **execution)
+    )
 
 
 def runs_of(task, count, seed=0):
-    return task.list_runs(unit_cube_points(count, len(task.uncertain_parameters), seed))
+    return task.list_run_settings(draw_unit_cube_points(count, len(task.uncertain_parameters), seed))
 
 
 def indices(out):
-    return [entry["run"] for entry in journal.read_entries(out)]
+    return [entry["run"] for entry in journal.read_journal_entries(out)]
 
 
 def processes_of(group):
@@ -223,17 +225,19 @@ def test_runs_are_the_ramp_of_the_fmu(fmu, cluster, tmp_path):
     """Runs on the workers of a scheduler, given by its address only, give the same numbers as `jointfmu
     ramp`."""
     given = {"surface.D": "2.45..2.6", "eccentricity": 5e-6}
-    task = state_fmu_problem(fmu, DRIVE, given)
+    task = define_fmu_study(fmu, DRIVE, given)
     runs = runs_of(task, 8)
-    done = do_runs(task, runs, tmp_path, scheduler=cluster)
-    assert (done.accepted.size, done.new_run_count, done.errors) == (8, 8, {})
-    found = {entry["run"]: entry for entry in journal.read_entries(tmp_path)}
+    done = do_runs(task, runs, tmp_path, scheduler_address=cluster)
+    assert (done.accepted_mask.size, done.new_run_count, done.error_messages) == (8, 8, {})
+    found = {entry["run"]: entry for entry in journal.read_journal_entries(tmp_path)}
     for i, settings in enumerate(runs):
         assert (
             found[i]["parameters"] == settings == {"eccentricity": 5e-6, "surface.D": settings["surface.D"]}
         )
         alone = ramp.run_ramp(fmu, "tau", 5.0, 1.0, settings)
-        assert found[i]["columns"] == {name: column.tolist() for name, column in alone.columns.items()}
+        assert found[i]["columns"] == {
+            name: column.tolist() for name, column in alone.variable_columns.items()
+        }
 
 
 @pytest.mark.parametrize(
@@ -248,13 +252,13 @@ def test_an_fmu_and_its_joint_have_the_same_numbers(flavour, name, load, to, giv
     """An FMU and its joint give the same numbers for the same samples, through the importer and through the
     library alone."""
     path, drive = native / flavour / f"{name}.fmu", LoadRamp(load, to, to / 6.0)
-    task = state_fmu_problem(path, drive, given)
+    task = define_fmu_study(path, drive, given)
     runs = runs_of(task, 4, 3)
-    assert do_runs(task, runs, tmp_path, workers=1).errors == {}
+    assert do_runs(task, runs, tmp_path, process_count=1).error_messages == {}
     joint = {"preload": "bolted_joint", "f": "gear_contact", "tau": "harmonic_drive"}[load]
-    alone = state_problem(load_default(joint), given, to, 7)
-    for entry in journal.read_entries(tmp_path):
-        found = alone.evaluator.evaluate(entry["parameters"])
+    alone = define_joint_study(load_default(joint), given, to, 7)
+    for entry in journal.read_journal_entries(tmp_path):
+        found = alone.run_evaluator.evaluate_sample(entry["parameters"])
         for output in set(found) & set(entry["columns"]):
             assert found[output][1:] == pytest.approx(entry["columns"][output][1:], rel=1e-9), output
 
@@ -337,7 +341,7 @@ import dying_run
 from jointfmu import progress
 if __name__ == "__main__":
     progress.MAX_JOB_ATTEMPTS = 2
-    print(*dying_run.run_until_five_dies(*map(Path, sys.argv[1:3]), workers=2))
+    print(*dying_run.run_until_five_dies(*map(Path, sys.argv[1:3]), process_count=2))
 """
 DIED = {5: "the process of the run died"}
 
@@ -383,7 +387,7 @@ def test_a_run_that_kills_its_process_of_a_cluster(fmu, tmp_path):
     With these settings dask blames every job of a worker that dies, on its first death.
     """
     with local_cluster(1, {"distributed.scheduler.allowed-failures": 0}) as address:
-        assert dying_run.run_until_five_dies(fmu, tmp_path, scheduler=address) == (24, 24, DIED)
+        assert dying_run.run_until_five_dies(fmu, tmp_path, scheduler_address=address) == (24, 24, DIED)
     assert sorted(indices(tmp_path)) == list(range(24))
 
 
@@ -392,23 +396,25 @@ def test_bands_of_the_runs(fmu, cluster, tmp_path):
     assert cli.main(["sweep", str(fmu), *SETTINGS, *RAMP, *arguments]) == 0
     head, *rows = (tmp_path / journal.BANDS_FILE).read_text().splitlines()
     column = head.split(",").index("K_WTS 50 % [N.m/rad]")
-    good = [entry["columns"]["K_WTS"] for entry in journal.read_entries(tmp_path) if "columns" in entry]
+    good = [
+        entry["columns"]["K_WTS"] for entry in journal.read_journal_entries(tmp_path) if "columns" in entry
+    ]
     median = [float(row.split(",")[column]) for row in rows]
     assert median == pytest.approx(np.median(good, axis=0), rel=1e-15)
     assert [float(row.split(",")[0]) for row in rows] == [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]
 
 
 def test_one_sweep_per_folder(tmp_path):
-    with journal.Journal(tmp_path, 8), pytest.raises(ValueError, match="another command is writing here"):
-        journal.Journal(tmp_path, 8).__enter__()
+    with journal.RunJournal(tmp_path, 8), pytest.raises(ValueError, match="another command is writing here"):
+        journal.RunJournal(tmp_path, 8).__enter__()
 
 
 def test_a_run_is_written_once(tmp_path):
     first, second = ({"run": 3, "parameters": {}, "error": text} for text in ("x", "y"))
-    with journal.Journal(tmp_path, 8) as held:
+    with journal.RunJournal(tmp_path, 8) as held:
         held.append_entries(first)
         held.append_entries(second)
-    with journal.Journal(tmp_path, 8) as held:
+    with journal.RunJournal(tmp_path, 8) as held:
         assert held.finished_runs == {3}
         assert held.first_failure == first
 
@@ -420,8 +426,8 @@ def test_an_interval_is_that_of_the_file_that_the_fmu_carries(fmu, tmp_path):
         for path in before.namelist():
             carried = fnmatch(path, "extra/*/parameters/*.toml") and not path.endswith("study.toml")
             after.writestr(path, format_parameter_file(known) if carried else before.read(path))
-    task = state_fmu_problem(own, DRIVE, {"surface.D": "interval"})
-    assert task.study_record(4, 0)["parameters"] == {"surface.D": "2.5..2.55"}
+    task = define_fmu_study(own, DRIVE, {"surface.D": "interval"})
+    assert task.make_study_record(4, 0)["parameters"] == {"surface.D": "2.5..2.55"}
     assert all(2.5 <= run["surface.D"] <= 2.55 for run in runs_of(task, 4))
 
 

@@ -22,7 +22,7 @@ drive = create_drawing_function(
     "drive",
     NEW_DRIVE,
     'jointfmu.drive("CSG-25-100").values["T2"]  # N.m\n48.0',
-    first_option="catalogue",
+    positional_option="catalogue",
 )
 """Make a harmonic drive: `jointfmu.drive`."""
 cycloidal_drive = create_drawing_function(

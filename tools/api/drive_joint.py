@@ -13,11 +13,11 @@ from .joint import Joint
 
 
 class DriveJoint(Joint):
-    """Harmonic drive of the public interface.
+    """Harmonic drive of the public interface: a joint with its torque-wind-up curve.
 
-    `wind_up`, `torque` and `stiffness` describe the midline, without hysteresis and with the wave generator
-    locked. Above max_torque the midline continues with its last tangent. The three methods then warn; results
-    of `evaluate` and `follow` have the warning in `messages`.
+    `wind_up`, `torque` and `stiffness` describe the midline: the curve without hysteresis, with the wave
+    generator locked. Above max_torque the midline continues with its last tangent. The three methods then
+    warn; results of `evaluate` and `follow` have the warning in `messages`.
 
     >>> import jointfmu
     >>> drive = jointfmu.drive("CSG-25-100")
@@ -40,18 +40,19 @@ class DriveJoint(Joint):
         """Tangent stiffness K_WTS (n) [N.m/rad] under torques (n) [N.m]."""
         return np.asarray(self._midline_curve.derivatives(np.abs(self.wind_up(torque)), 1)[1])[()]
 
-    def _warn_beyond_table(self, input_name: str, values: ArrayLike, table_end: float, unit: str) -> None:
-        """Warn, as the FMU does, if a torque or wind-up is beyond the end of the tabulated midline."""
-        largest = float(np.max(np.abs(np.asarray(values, dtype=np.float64)), initial=0.0))
-        if largest > table_end:
-            text = (
-                f"{input_name} = {largest:.6g} {unit} is outside [-{table_end:.6g}, {table_end:.6g}] {unit}"
-            )
+    def _warn_beyond_table(
+        self, input_name: str, input_values: ArrayLike, table_end_value: float, input_unit: str
+    ) -> None:
+        """Warn, as the FMU does, if a torque or wind-up is beyond the end of the midline's table."""
+        largest = float(np.max(np.abs(np.asarray(input_values, dtype=np.float64)), initial=0.0))
+        if largest > table_end_value:
+            allowed = f"[-{table_end_value:.6g}, {table_end_value:.6g}] {input_unit}"
+            text = f"{input_name} = {largest:.6g} {input_unit} is outside {allowed}"
             warnings.warn(f"{self.name}: {text}: {EXTRAPOLATION_WARNING}", stacklevel=3)
 
     @property
     def _midline_curve(self) -> Curve:
-        """Midline of the hysteresis loop: table of torque [N.m] over wind-up [rad], both positive."""
+        """Torque [N.m] as a function of wind-up [rad], both positive, without hysteresis: a table."""
         curve = self.spring.curve
         assert isinstance(curve, Curve)
         return curve

@@ -66,12 +66,12 @@ class Table:
         )
 
 
-MAX_END_ROWS = 5
+MAX_ROWS_AT_EACH_END = 5
 """Number of rows that are printed at the start and at the end of long columns [1]."""
 
 
 class TableDisplay(ABC):
-    """Base class of objects that are displayed as a table."""
+    """Base class of objects that are printed, and shown in a notebook, as a table."""
 
     @abstractmethod
     def _build_table(self) -> Table: ...
@@ -118,28 +118,30 @@ class Frame(TableDisplay, Mapping[str, Array]):
         return len(self._columns)
 
     def _build_table(self) -> Table:
-        """Build the table of the columns, with the first and the last rows if there are many."""
+        """Build the printed table of the columns; of many rows, only the first and the last ones."""
         count = max((column.size for column in self._columns.values()), default=0)
         shown = (
             [*range(count)]
-            if count <= 2 * MAX_END_ROWS
-            else [*range(MAX_END_ROWS), *range(count - MAX_END_ROWS, count)]
+            if count <= 2 * MAX_ROWS_AT_EACH_END
+            else [*range(MAX_ROWS_AT_EACH_END), *range(count - MAX_ROWS_AT_EACH_END, count)]
         )
         rows = [[f"{column[i] + 0.0:.6g}" for column in self._columns.values()] for i in shown]
-        if count > 2 * MAX_END_ROWS:
-            rows.insert(MAX_END_ROWS, ["..."] * len(self))
+        if count > 2 * MAX_ROWS_AT_EACH_END:
+            rows.insert(MAX_ROWS_AT_EACH_END, ["..."] * len(self))
         heads = [f"{name} [{self.units[name]}]" for name in self._columns]
         return Table(f"{count} points", heads, rows, self.messages)
 
-    @plots.apply_style()
+    @plots.apply_plot_style()
     def plot(self, x: str | None = None, y: str | None = None) -> "Figure":
-        """Draw one column over another, by default the last over the first; returns a matplotlib figure.
+        """Draw the column y as a function of the column x, by default the last of the first one.
+
+        Returns a matplotlib figure.
 
         Raises KeyError for a name that is not a column.
         """
         names = list(self)
         x, y = x or names[0], y or names[-1]
-        (x_unit, a), (y_unit, b) = (plots.choose_unit(self.units[name], self[name]) for name in (x, y))
+        (x_unit, a), (y_unit, b) = (plots.choose_plot_unit(self.units[name], self[name]) for name in (x, y))
         figure = plots.create_figure((6.4, 4.0))
         axes = figure.subplots()
         axes.plot(a * self[x], b * self[y], color=plots.BLUE)
@@ -192,4 +194,4 @@ def run(
     points = {name: np.atleast_1d(np.asarray(x, dtype=np.float64)) for name, x in inputs.items()}
     clock = None if time is None else np.asarray(time, dtype=np.float64)
     result = ramp.run_paths(fmu, points, clock, settings)
-    return Frame(result.columns, result.units, result.messages)
+    return Frame(result.variable_columns, result.variable_units, result.log_messages)

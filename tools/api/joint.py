@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from jointfmu.contact.laws import LAWS
 from jointfmu.files.outputs import HTML_FILE, PARAMETER_FILE, check_output, write_parameter_text
 from jointfmu.joints import KINDS
 from jointfmu.joints.model import Model, TabulatedJoint
@@ -28,7 +29,7 @@ from .law import Law
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-JointFacts = Mapping[str, tuple[float, str, str]]
+DerivedResults = Mapping[str, tuple[float, str, str]]
 """Additional results of a joint: {name: (value [SI], unit, meaning)}."""
 
 
@@ -47,7 +48,7 @@ class Joint(TableDisplay):
     """
 
     file: ParameterFile
-    facts: JointFacts = field(default_factory=dict)
+    facts: DerivedResults = field(default_factory=dict)
     notes: Sequence[str] = ()
 
     @property
@@ -65,7 +66,10 @@ class Joint(TableDisplay):
 
     @property
     def fmus(self) -> dict[str, Model]:
-        """FMUs that can be built of the joint: {name: model}. Methods evaluate the first one by default."""
+        """FMUs that can be built of the joint: {name: model with inputs and outputs}.
+
+        Methods evaluate the first one by default.
+        """
         return {model.name: model for model in KINDS[self.file.joint].models}
 
     @property
@@ -76,7 +80,10 @@ class Joint(TableDisplay):
         """
         parameters = KINDS[self.file.joint].extract_law(self.file.values)
         if parameters is None:
-            raise ValueError(f"{self.name}: law = {self.file.law!r} is of no interface")
+            raise ValueError(
+                f"{self.name}: law = {self.file.law!r} is not the law of an interface; expected one of "
+                f"{', '.join(LAWS)}"
+            )
         return Law(self.file.law, parameters, find_rms_height(self.file))
 
     @property
@@ -86,20 +93,26 @@ class Joint(TableDisplay):
 
     @property
     def parameters(self) -> Table:
-        """Table of all parameters with value, unit, meaning, kind and source."""
+        """Table of all parameters with value, unit, meaning, kind (origin of the value) and source."""
         rows = [
-            (entry.name, *format_quantity(entry.value, entry.unit), entry.meaning, entry.origin, entry.source)
+            (
+                entry.entry_name,
+                *format_quantity(entry.entry_value, entry.si_unit),
+                entry.entry_meaning,
+                entry.value_origin,
+                entry.value_source,
+            )
             for entry in list_parameter_file_entries(self.file)
         ]
         return Table(self._title, ("name", "value", "unit", "meaning", "kind", "source"), rows)
 
     @property
     def _title(self) -> str:
-        """First line of the printed joint: its class and the name of the parameter set."""
+        """First line of the printed joint: name of the parameter set, kind of joint, law."""
         return f"{self.name}: {KINDS[self.file.joint].title}, law {self.file.law}"
 
     def _build_table(self) -> Table:
-        """Table that is printed for the joint: facts and warnings, then parameters without their meaning."""
+        """Build the table that is printed for the joint: warnings, additional results, parameters."""
         texts = (
             (name, " ".join(format_quantity(v, u, 4)), text) for name, (v, u, text) in self.facts.items()
         )
@@ -139,7 +152,7 @@ class Joint(TableDisplay):
 
     @cached_property
     def spring(self) -> TabulatedJoint:
-        """Tabulated load-displacement curves of the joint, from which all outputs are computed."""
+        """Joint ready for evaluation: parameters and load-displacement tables, which give all outputs."""
         return KINDS[self.file.joint].models[0].tabulate(self.file.values)
 
     def evaluate(self, fmu: str | None = None, /, **inputs: ArrayLike) -> Frame:
@@ -156,7 +169,7 @@ class Joint(TableDisplay):
         >>> bool(frame["f_x"][1] < frame["f_x"][0] == 0.0)
         True
         """
-        return self._evaluate_points(fmu, inputs, each_from_rest=True)
+        return self._evaluate_input_points(fmu, inputs, restart_at_each_point=True)
 
     def follow(self, fmu: str | None = None, /, **inputs: ArrayLike) -> Frame:
         """Compute every output along a path of inputs from rest. Friction keeps its history along the path.
@@ -172,16 +185,16 @@ class Joint(TableDisplay):
         >>> bool(path["f_x"][2] > 0.0 and path["E_loss"][2] > 0.0)
         True
         """
-        return self._evaluate_points(fmu, inputs, each_from_rest=False)
+        return self._evaluate_input_points(fmu, inputs, restart_at_each_point=False)
 
-    def _evaluate_points(
-        self, fmu: str | None, inputs: Mapping[str, ArrayLike], *, each_from_rest: bool
+    def _evaluate_input_points(
+        self, fmu_name: str | None, inputs: Mapping[str, ArrayLike], *, restart_at_each_point: bool
     ) -> Frame:
         """Evaluate the joint at one point of the inputs after the other.
 
         Inputs are broadcast to the same length.
         """
-        model = self.model(fmu)
+        model = self.model(fmu_name)
         names = [v.name for v in model.inputs]
         if unknown := [name for name in inputs if name not in names]:
             raise ValueError(f"{model.name}: unknown input {unknown[0]!r}, allowed are {', '.join(names)}")
@@ -192,36 +205,38 @@ class Joint(TableDisplay):
             if outside:
                 allowed = f"{variable.interval} {variable.unit}"
                 raise ValueError(f"{model.name}: {variable.name} = {outside[0]:g} is outside {allowed}")
-        if model.name not in self._opened_joints:
-            self._opened_joints[model.name] = open_joint(model, self.file)
-        found = self._opened_joints[model.name].follow(columns, each_from_rest=each_from_rest)
+        if model.name not in self._joint_engines:
+            self._joint_engines[model.name] = open_joint(model, self.file)
+        found = self._joint_engines[model.name].evaluate_path(
+            columns, restart_at_each_point=restart_at_each_point
+        )
         units = {v.name: v.unit for v in (*model.inputs, *model.outputs)}
-        shown = {n: found.columns[n] for n in units if n in columns or n not in names}
-        return Frame(shown, units, found.warnings)
+        shown = {n: found.variable_columns[n] for n in units if n in columns or n not in names}
+        return Frame(shown, units, found.validity_warnings)
 
     @cached_property
-    def _opened_joints(self) -> dict[str, JointEngine]:
-        """Joint libraries that are loaded for evaluation: {name of the FMU: opened joint}."""
+    def _joint_engines(self) -> dict[str, JointEngine]:
+        """Joints that are open for evaluation: {name of the FMU: joint with its compiled library}."""
         return {}
 
     def __getstate__(self) -> dict[str, Any]:
-        """State for pickle: the fields without the opened joints, which belong to this process."""
+        """Fields of the object for pickle, without the opened joints, which belong to this process."""
         return {name: getattr(self, name) for name in self.__dataclass_fields__}
 
-    @plots.apply_style()
+    @plots.apply_plot_style()
     def plot(self, fmu: str | None = None) -> "Figure":
-        """Draw the outputs over the load, and hysteresis loops if there are any; returns a figure."""
+        """Draw the outputs as functions of the load, and hysteresis loops, if any; returns a figure."""
         with require_package("draw"):
             from ..pages.report.figure import draw_panels
-            from ..pages.report.joint import loop_figure, ramp_figure
+            from ..pages.report.joint import make_loop_figure, make_ramp_figure
             from ..pages.report.load_history import LoadHistory
         with show_status(f"{self.name}: plot"):
             set_status_text("curves over the load and loops")
             course = LoadHistory(self.model(fmu), self.file)
-            panels = list(ramp_figure(course).panels)
+            panels = list(make_ramp_figure(course).plot_panels)
             loops = course.compute_loops() if course.model.load_cycle else None
         if loops and any(loop.energy_loss for loop in loops.loops):
-            panels += loop_figure(course, loops).panels
+            panels += make_loop_figure(course, loops).plot_panels
         figure = plots.create_figure((4.4 * len(panels), 3.8))
         draw_panels(figure, panels)
         return figure
@@ -266,7 +281,9 @@ class Joint(TableDisplay):
 
             with show_status(f"{self.name}: build"):
                 set_status_text(f"{', '.join(names)} into {out}")
-                return building.build_fmus(names, flavours, self.file, Path(out), alias=name, overwrite=force)
+                return building.build_fmus(
+                    names, flavours, self.file, Path(out), fmu_alias=name, replace_foreign_files=force
+                )
 
     def report(self, path: str | Path, fmu: str | None = None, *, force: bool = False) -> Path:
         """Write a page about the joint (HTML): curves, loops, sources of its numbers.

@@ -14,7 +14,7 @@ from jointfmu.quantity import Array, flatten_fields, flatten_parameters
 from ..common import plots
 from ..common.judgement import assess_law_stiffness
 from ..common.shown import format_quantity
-from ..inputs.laws import LAW_COLUMN_UNITS, LAW_COLUMNS, build_law_parameters, find_surface_rms_height
+from ..inputs.laws import LAW_OUTPUT_COLUMNS, LAW_OUTPUT_UNITS, build_law_parameters, find_surface_rms_height
 from ..run.ramps.ramp import broadcast_columns
 from .frame import Frame, Table, TableDisplay
 
@@ -46,7 +46,7 @@ class Law(TableDisplay):
         return flatten_parameters(self.parameters)
 
     def _build_table(self) -> Table:
-        """Build the table that is printed for the law: its parameters."""
+        """Build the table that is printed for the law: name, value, unit and meaning of its parameters."""
         fields = {name: item.metadata for name, item in flatten_fields(type(self.parameters))}
         rows = [
             (name, *format_quantity(value, fields[name].get("unit")), fields[name]["doc"])
@@ -65,17 +65,19 @@ class Law(TableDisplay):
         Raises ValueError for a pressure that is negative, NaN, infinite or not representable, or arrays of
         different lengths.
         """
-        state = evaluate_at_pressure(self.parameters, self._to_column("pressure", pressure))
+        state = evaluate_at_pressure(self.parameters, self._to_parameter_column("pressure", pressure))
         if many := ", ".join(self._array_parameters):
-            return self._build_frame(state, (f"level and range are not judged for arrays of {many}",))
-        return self._build_frame(
+            return self._build_result_frame(
+                state, (f"stiffness and pressure are not checked for plausibility with arrays of {many}",)
+            )
+        return self._build_result_frame(
             state, assess_law_stiffness(self.parameters, state["pressure"].tolist(), self.h).warnings
         )
 
     def at_largest_spot(self, area: ArrayLike) -> Frame:
         """Evaluate the law for areas (n) [m2] of the largest contact spot."""
-        return self._build_frame(
-            evaluate_at_largest_spot(self.parameters, self._to_column("largest_spot", area)), ()
+        return self._build_result_frame(
+            evaluate_at_largest_spot(self.parameters, self._to_parameter_column("largest_spot", area)), ()
         )
 
     @property
@@ -83,27 +85,31 @@ class Law(TableDisplay):
         """Parameters of the law that are arrays: {structured name: array (n)}."""
         return {name: value for name, value in self.values.items() if isinstance(value, np.ndarray)}
 
-    def _to_column(self, column_name: str, column_values: ArrayLike) -> Array:
+    def _to_parameter_column(self, column_name: str, column_values: ArrayLike) -> Array:
         """Convert values to an array (n) or (1). Raises ValueError if parameters have another length."""
         column = np.ravel(np.asarray(column_values, dtype=np.float64))
         broadcast_columns({column_name: column, **self._array_parameters}, f"law {self.name}")
         return column
 
-    def _build_frame(self, state: Mapping[str, Any], messages: tuple[str, ...]) -> Frame:
-        """Make the result columns of the contact quantities in `state`, with warnings as messages."""
+    def _build_result_frame(
+        self, contact_quantities: Mapping[str, Any], warning_lines: tuple[str, ...]
+    ) -> Frame:
+        """Build the result from contact quantities {symbol: values}, with warnings as its messages."""
         names = [
-            name for name in (*LAW_COLUMNS, *(n for n in state if n not in LAW_COLUMNS)) if name in state
+            name
+            for name in (*LAW_OUTPUT_COLUMNS, *(n for n in contact_quantities if n not in LAW_OUTPUT_COLUMNS))
+            if name in contact_quantities
         ]
         defined = {
-            name: state[name]
+            name: contact_quantities[name]
             for name in names
-            if not np.size(state[name]) or not np.all(np.isnan(state[name]))
+            if not np.size(contact_quantities[name]) or not np.all(np.isnan(contact_quantities[name]))
         }
-        return Frame(defined, LAW_COLUMN_UNITS, messages)
+        return Frame(defined, LAW_OUTPUT_UNITS, warning_lines)
 
-    @plots.apply_style()
+    @plots.apply_plot_style()
     def plot(self, pressure: ArrayLike | None = None) -> "Figure":
-        """Draw normal and tangential stiffness per area over the pressure [Pa]; returns a figure."""
+        """Draw normal and tangential stiffness per area as functions of the pressure; returns a figure."""
         p = (
             np.geomspace(1e5, 1e8, 60)
             if pressure is None

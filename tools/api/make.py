@@ -16,16 +16,16 @@ from jointfmu.parameters import load_parameter_file as load_file
 
 from ..common import plots
 from ..common.options import Option
-from ..inputs.drawing.faces import warn_unknown_shape
+from ..inputs.drawing.faces import warn_unknown_height_distribution
 from ..inputs.drawing.part import NewJoint, NewJointCommand
 from ..inputs.drawing.reading import parse_number
-from ..inputs.fitting.outcome import FitResult, draw_fit, figure_size, format_deviation
-from ..inputs.fitting.procedure import fit_procedures
+from ..inputs.fitting.outcome import FitResult, draw_fit_plots, fit_figure_size, format_relative_deviation
+from ..inputs.fitting.procedure import find_fit_procedures
 from ..joints.harmonic_drive.catalogue import list_drives
 from ..joints.harmonic_drive.new import NEW_JOINT_COMMAND as NEW_DRIVE
 from .drive_joint import DriveJoint
 from .frame import Table, TableDisplay
-from .joint import Joint, JointFacts
+from .joint import DerivedResults, Joint
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -43,16 +43,20 @@ _JOINT_FUNCTION_DOCSTRING = """Make {}.
     >>> {}
 """
 """Docstring of a function that makes a joint from its drawing, with gaps for its options."""
-_OPTION_PATTERN = re.compile(r"--([A-Za-z][\w-]*)")
+_COMMAND_LINE_OPTION_PATTERN = re.compile(r"--([A-Za-z][\w-]*)")
 """Pattern of an option of the command line in an error message."""
 
 
 def create_joint(
-    parameter_file: ParameterFile, facts: JointFacts | None = None, notes: Sequence[str] = ()
+    parameter_file: ParameterFile, derived_results: DerivedResults | None = None, notes: Sequence[str] = ()
 ) -> Joint:
-    """Make the joint object of a parameter file."""
+    """Make the public object of a joint from its parameter file.
+
+    derived_results : {name: (value [SI], unit, meaning)} of additional results
+    notes           : warnings from making the joint, one line each
+    """
     joint_class = DriveJoint if parameter_file.joint == "harmonic_drive" else Joint
-    return joint_class(parameter_file, facts or {}, tuple(notes))
+    return joint_class(parameter_file, derived_results or {}, tuple(notes))
 
 
 def load(source: str | Path) -> Joint:
@@ -72,33 +76,36 @@ def load(source: str | Path) -> Joint:
         return create_joint(load_default(MODELS[name].joint if name in MODELS else name))
     if Path(source).suffix == ".toml" or Path(source).is_file():
         return create_joint(load_file(source))
-    if any(item.name.lower() == name.lower() for item in list_drives()):
+    if any(item.joint_name.lower() == name.lower() for item in list_drives()):
         with _rename_options_in_errors():
-            return make_from_drawing(NEW_DRIVE, {"catalogue": name})
+            return make_joint_from_drawing(NEW_DRIVE, {"catalogue": name})
     raise ValueError(
         f"{name!r} is not a parameter file (.toml) or a known name; allowed are "
         f"{', '.join((*MODELS, *KINDS))} and names of the catalogue (jointfmu catalogue)"
     )
 
 
-def make_from_drawing(joint_command: NewJointCommand, option_values: Mapping[str, object]) -> Joint:
-    """Make the joint of a drawing from the options of its `jointfmu new` command.
+def make_joint_from_drawing(joint_command: NewJointCommand, option_values: Mapping[str, object]) -> Joint:
+    """Make a joint from the values on its drawing, as the command `jointfmu new` does.
 
-    option_values : {option: value}, in the forms that `_to_command_line_value` accepts
+    joint_command : the command for this kind of joint: its options, and how they make the joint
+    option_values : {option: value}; numbers, texts with a unit, or sequences
 
     Raises ValueError for an unknown or missing option, or an impossible value. The message names options as
     on the command line.
     """
-    options = {option.name: option for option in joint_command.options}
+    options = {option.name: option for option in joint_command.command_options}
     if unknown := [name for name in option_values if name not in options]:
         raise ValueError(f"unknown name {unknown[0]!r}, allowed are {', '.join(options)}")
     if missing := [
-        o.name for o in joint_command.options if o.is_required and option_values.get(o.name) is None
+        o.name for o in joint_command.command_options if o.is_required and option_values.get(o.name) is None
     ]:
         raise ValueError(f"{', '.join(missing)} missing: {options[missing[0]].help_text}")
     texts = {name: _to_command_line_value(o, option_values.get(name)) for name, o in options.items()}
     new: NewJoint = joint_command.make_joint(texts)
-    return create_joint(new.file, new.facts, [*new.warnings, *warn_unknown_shape(texts)])
+    return create_joint(
+        new.parameter_file, new.facts, [*new.warnings, *warn_unknown_height_distribution(texts)]
+    )
 
 
 @contextmanager
@@ -107,11 +114,13 @@ def _rename_options_in_errors() -> Iterator[None]:
     try:
         yield
     except ValueError as error:
-        raise ValueError(_OPTION_PATTERN.sub(lambda m: m[1].replace("-", "_"), str(error))) from None
+        raise ValueError(
+            _COMMAND_LINE_OPTION_PATTERN.sub(lambda m: m[1].replace("-", "_"), str(error))
+        ) from None
 
 
 def _to_command_line_value(option: Option, option_value: Any) -> object:
-    """Convert a value to its form on the command line: text, a list of texts, or a bool for a flag.
+    """Convert the value of an option to its form on the command line: text, list of texts, bool for a flag.
 
     A size becomes one text such as 200x100. Raises ValueError for too many values, or an unknown choice.
     """
@@ -122,7 +131,7 @@ def _to_command_line_value(option: Option, option_value: Any) -> object:
     if option.lone_value and option_value is True:
         return option.lone_value
     values = option_value.tolist() if isinstance(option_value, np.ndarray) else option_value
-    texts = [_format_value(v) for v in (values if isinstance(values, list | tuple) else [values])]
+    texts = [_format_option_value(v) for v in (values if isinstance(values, list | tuple) else [values])]
     if option.separator and not (
         option.is_list and any(sign in text for text in texts for sign in (",", option.separator))
     ):
@@ -136,27 +145,27 @@ def _to_command_line_value(option: Option, option_value: Any) -> object:
     return texts[0]
 
 
-def _format_value(value: Any) -> str:
+def _format_option_value(option_value: Any) -> str:
     """Format a number or a text as on the command line; two numbers become a position X,Y."""
-    if isinstance(value, list | tuple | np.ndarray):
-        return ",".join(map(_format_value, value))
-    return repr(float(value)) if isinstance(value, float) else str(value)
+    if isinstance(option_value, list | tuple | np.ndarray):
+        return ",".join(map(_format_option_value, option_value))
+    return repr(float(option_value)) if isinstance(option_value, float) else str(option_value)
 
 
 def create_drawing_function(
     function_name: str,
     joint_command: NewJointCommand,
     doctest_example: str,
-    first_option: str | None = None,
+    positional_option: str | None = None,
 ) -> Callable[..., Joint]:
     """Create a public function such as `jointfmu.bolted_joint`, which makes a joint from its drawing.
 
-    The signature and the docstring of the function list the options of the drawing.
+    The function has the options of the command `jointfmu new` as arguments, listed in its docstring.
 
-    function_name   : name of the function
-    joint_command   : the drawing: its options, and how they make the joint
-    doctest_example : call of the function and its result, as in a doctest
-    first_option    : option that may be passed as the first positional argument
+    function_name     : name of the function
+    joint_command     : the command for this kind of joint: its options, and how they make the joint
+    doctest_example   : call of the function and its result, as in a doctest
+    positional_option : option that may be passed as the first positional argument
     """
     positional, keyword = inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY
 
@@ -164,13 +173,13 @@ def create_drawing_function(
         """Make the joint of the drawing from keyword arguments."""
         arguments = signature.bind(*args, **options).arguments
         with _rename_options_in_errors():
-            return make_from_drawing(joint_command, arguments)
+            return make_joint_from_drawing(joint_command, arguments)
 
-    ordered = sorted(joint_command.options, key=lambda option: option.name != first_option)
+    ordered = sorted(joint_command.command_options, key=lambda option: option.name != positional_option)
     parameters = [
         inspect.Parameter(
             option.name,
-            positional if option.name == first_option else keyword,
+            positional if option.name == positional_option else keyword,
             default=inspect.Parameter.empty if option.is_required else False if option.is_flag else None,
         )
         for option in ordered
@@ -179,42 +188,44 @@ def create_drawing_function(
     make_joint.__name__ = make_joint.__qualname__ = function_name
     make_joint.__module__ = "jointfmu"
     make_joint.__signature__ = signature  # type: ignore[attr-defined]
-    meanings = "\n".join(f"    {option.name} : {_option_help(option)}" for option in ordered)
+    meanings = "\n".join(f"    {option.name} : {_format_option_help(option)}" for option in ordered)
     make_joint.__doc__ = _JOINT_FUNCTION_DOCSTRING.format(
-        joint_command.description, meanings, doctest_example.replace("\n", "\n    ")
+        joint_command.joint_description, meanings, doctest_example.replace("\n", "\n    ")
     )
     return make_joint
 
 
-def _option_help(option: Option) -> str:
-    """Line of the docstring for an option of a drawing: name, meaning, default."""
+def _format_option_help(option: Option) -> str:
+    """Meaning and choices of an option of `jointfmu new`, for the docstring of the function."""
     return f"{option.help_text}{': ' + ', '.join(option.choices) if option.choices else ''}"
 
 
-def make_fit_table(outcome: FitResult) -> Table:
-    """Make a table of the result of a fit: each parameter with its uncertainty; doubts and notes as lines."""
+def make_fit_table(fit_result: FitResult) -> Table:
+    """Make a table of the result of a fit: each parameter with its uncertainty; warnings and notes."""
     rows = [
         (
             row["name"],
             f"{row['value']:.6g}",
             row["unit"],
-            "unknown" if row["relative_deviation"] is None else format_deviation(row["relative_deviation"]),
+            "unknown"
+            if row["relative_deviation"] is None
+            else format_relative_deviation(row["relative_deviation"]),
             "yes" if row["determined"] else "no",
         )
-        for row in outcome.unknown_rows()
+        for row in fit_result.list_fitted_parameters()
     ]
-    doubt = outcome.rejection_reason()
-    subject = "joint" if outcome.parameters.joint in KINDS else "system"
+    doubt = fit_result.rejection_reason()
+    subject = "joint" if fit_result.parameters.joint in KINDS else "system"
     lines = [f"warning: the fit does not determine the {subject}: {doubt}"] if doubt else []
-    lines += [f"note: {line}" for line in outcome.warnings()]
+    lines += [f"note: {line}" for line in fit_result.warnings()]
     return Table("fit", ("name", "value", "unit", "spread", "determined"), rows, lines)
 
 
-@plots.apply_style()
-def plot_fit(outcome: FitResult) -> "Figure":
-    """Draw data, fitted law and residuals; returns a matplotlib figure."""
-    figure = plots.create_figure(figure_size(outcome))
-    draw_fit(figure, outcome)
+@plots.apply_plot_style()
+def plot_fit(fit_result: FitResult) -> "Figure":
+    """Draw measured data, fitted curve and residuals of a fit; returns a matplotlib figure."""
+    figure = plots.create_figure(fit_figure_size(fit_result))
+    draw_fit_plots(figure, fit_result)
     return figure
 
 
@@ -246,18 +257,18 @@ class Fit(TableDisplay):
         return plot_fit(self.outcome)
 
 
-def _procedure_paths(
-    procedure: str, takes_several_files: bool, file: str | Path | Sequence[str | Path]
+def _to_file_argument(
+    procedure_name: str, takes_several_files: bool, stated_files: str | Path | Sequence[str | Path]
 ) -> Path | list[Path]:
     """Convert the argument `file` of `fit` to what the fit function takes: one path, or a list of paths."""
-    if isinstance(file, str | Path):
-        return [Path(file)] if takes_several_files else Path(file)
+    if isinstance(stated_files, str | Path):
+        return [Path(stated_files)] if takes_several_files else Path(stated_files)
     if not takes_several_files:
-        raise ValueError(f"procedure {procedure!r} takes one file")
-    return [Path(path) for path in file]
+        raise ValueError(f"procedure {procedure_name!r} takes one file, not several")
+    return [Path(path) for path in stated_files]
 
 
-def _to_procedure_value(option: Option, option_value: Any) -> object:
+def _to_fit_option_value(option: Option, option_value: Any) -> object:
     """Convert an option of a fit to the form that its fit function takes; numbers are in SI units."""
     if option_value is None or not (option.is_number or option.default_unit):
         return _to_command_line_value(option, option_value)
@@ -294,7 +305,7 @@ def fit(
     >>> drive.values["K1"]
     4700.0
     """
-    requested, available = joint or (start.file.joint if start else None), fit_procedures()
+    requested, available = joint or (start.file.joint if start else None), find_fit_procedures()
     allowed = {
         name: [other for other in choices if requested in (None, other)]
         for name, choices in available.items()
@@ -303,20 +314,22 @@ def fit(
     if procedure not in allowed:
         raise ValueError(f"procedure = {procedure!r}, allowed are {', '.join(allowed)}")
     if len(joints := allowed[procedure]) > 1:
-        raise ValueError(f"procedure {procedure!r} is of several joints; expected joint = one of {joints}")
+        raise ValueError(f"procedure {procedure!r} exists for several joints; state joint = one of {joints}")
     chosen = available[procedure][joints[0]]
     if chosen.takes_file == (file is None):
-        raise ValueError(f"procedure {procedure!r} takes {'a' if chosen.takes_file else 'no'} file")
-    units = {option.unit_option for option in chosen.options}  # for text without a unit; numbers here are SI
-    declared = {option.name: option for option in chosen.options if option.name not in units}
+        raise ValueError(f"procedure {procedure!r} {'needs a' if chosen.takes_file else 'takes no'} file")
+    units = {
+        option.unit_option for option in chosen.procedure_options
+    }  # for text without a unit; numbers here are SI
+    declared = {option.name: option for option in chosen.procedure_options if option.name not in units}
     if unknown := [name for name in options if name not in declared]:
         raise ValueError(f"unknown name {unknown[0]!r}, allowed are {', '.join(declared)}")
     if missing := [name for name, option in declared.items() if option.is_required and name not in options]:
         raise ValueError(f"{', '.join(missing)} missing: {declared[missing[0]].help_text}")
-    data = () if file is None else (_procedure_paths(procedure, chosen.takes_several_files, file),)
+    data = () if file is None else (_to_file_argument(procedure, chosen.takes_several_files, file),)
     names = [free] if isinstance(free, str) else free
     with _rename_options_in_errors():
         values = {
-            n: _to_procedure_value(option, options.get(n, option.default)) for n, option in declared.items()
+            n: _to_fit_option_value(option, options.get(n, option.default)) for n, option in declared.items()
         }
         return Fit(chosen.run_fit(*data, start and start.file, names, **values))

@@ -53,14 +53,14 @@ class SystemFit(TableDisplay):
         """
         path = Path(path)
         check_output(path, PARAMETER_FILE, force)
-        write_parameter_text(path, self._format_text(path))
+        write_parameter_text(path, self._format_system_file(path))
         return path
 
-    def _format_text(self, path: Path) -> str:
-        """Text of the system file with the fitted values, for a file in the folder of `path`."""
-        check_fmu_name(path.stem)
-        unknowns = {u.name: u.unit for u in self.outcome.solution.unknowns}
-        return format_fitted_system(self.system_file, self.outcome.parameters, unknowns, path)
+    def _format_system_file(self, target_path: Path) -> str:
+        """Text of the system file with the fitted values, for a file in the folder of `target_path`."""
+        check_fmu_name(target_path.stem)
+        unknowns = {u.parameter_name: u.si_unit for u in self.outcome.solution.unknowns}
+        return format_fitted_system(self.system_file, self.outcome.parameters, unknowns, target_path)
 
 
 def fit_system(

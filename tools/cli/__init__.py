@@ -47,7 +47,7 @@ def _run_command(args: Any, command_name: str) -> int:
     from jointfmu.quantity.refusal import InputRefusal
 
     from . import outputs
-    from .command import option_of_setting
+    from .command import find_option_of_argument
 
     try:
         os.getcwd()
@@ -61,11 +61,14 @@ def _run_command(args: Any, command_name: str) -> int:
         print(end="", flush=True)
         return status
     except (ValueError, RuntimeError) as error:
-        hint = [f"({option_of_setting(args, error.setting)})"] if isinstance(error, InputRefusal) else []
+        hint = (
+            [f"({find_option_of_argument(args, error.setting)})"] if isinstance(error, InputRefusal) else []
+        )
         print(f"{command_name}:", *str(error).splitlines(), *hint, file=sys.stderr)
         return 2 if isinstance(error, ValueError) else 1
     except OverflowError:
         print(
-            f"{command_name}: a parameter is so large that results of the law exceed 1.8e308", file=sys.stderr
+            f"{command_name}: a result exceeds 1.8e308; check the units of parameters and loads",
+            file=sys.stderr,
         )
         return 2

@@ -21,18 +21,18 @@ from .examples import EXAMPLE_PREREQUISITES, EXAMPLES
 class CommandResult:
     """Result of a command, to be printed.
 
-    json_document : JSON object for `--json`
-    lines         : text for people, on standard output
-    notes         : text for people, on standard error
-    stiffness_judgement : plausibility of the stiffness; its lines and warnings are printed too, and are added
-                    to the JSON object
-    written_files : paths of the files that the command wrote, printed last; None entries are ignored
-    exit_status   : exit status of the process
+    json_document       : JSON object for `--json`
+    output_lines        : lines of text for standard output
+    stderr_lines        : lines of text for standard error: notes and warnings
+    stiffness_judgement : whether the stiffness of the joint is plausible; its lines and warnings are printed
+                          too, and are added to the JSON object
+    written_files       : paths of the files that the command wrote, printed last; None entries are ignored
+    exit_status         : exit status of the process
     """
 
     json_document: Any
-    lines: Iterable[str] = ()
-    notes: Iterable[str] = ()
+    output_lines: Iterable[str] = ()
+    stderr_lines: Iterable[str] = ()
     stiffness_judgement: Plausibility | None = None
     written_files: Iterable[object] = ()
     exit_status: int = 0
@@ -44,9 +44,9 @@ class CommandResult:
             print(json.dumps({**self.json_document, **validity} if validity else self.json_document))
             return self.exit_status
         judgement = self.stiffness_judgement or Plausibility(None, ())
-        for line in (*self.lines, *judgement.format_lines()):
+        for line in (*self.output_lines, *judgement.format_lines()):
             print(line)
-        for note in (*self.notes, *(f"warning: {text}" for text in judgement.warnings)):
+        for note in (*self.stderr_lines, *(f"warning: {text}" for text in judgement.warnings)):
             print(note, file=sys.stderr)
         for path in filter(None, self.written_files):
             print(f"wrote {path}")
@@ -65,20 +65,20 @@ _INVALID_CHOICE_PATTERN = re.compile(r"invalid choice: '?([^' ]*)'? \(choose fro
 """Error message of argparse for an invalid choice."""
 
 
-def suggest_word(word: str, known_words: Iterable[str]) -> str:
-    """Format a suggestion for an error message: the known word most similar to `word`; empty if none is."""
-    matches = find_similar_names(word, known_words, 1)
+def suggest_word(unknown_word: str, known_words: Iterable[str]) -> str:
+    """Format a suggestion for an error message: the most similar known word; empty if no word is similar."""
+    matches = find_similar_names(unknown_word, known_words, 1)
     return f"; did you mean {matches[0]}?" if matches else ""
 
 
 class Parser(argparse.ArgumentParser):
     """Argument parser with one-line errors, negative numbers in any notation, and an example in the help.
 
-    example           : words after `jointfmu`; None: the entry of `EXAMPLES`
+    example_arguments : words after `jointfmu`; None: the entry of `EXAMPLES`
     output_file_kinds : {argument: kind of file} of the files that the command writes
     """
 
-    example: str | None = None
+    example_arguments: str | None = None
     output_file_kinds: dict[str, FileKind]
 
     def __init__(self, *args: Any, **options: Any) -> None:
@@ -89,7 +89,7 @@ class Parser(argparse.ArgumentParser):
     def format_help(self) -> str:
         """Format the help of argparse, followed by a one-line example to copy."""
         name = self.prog.partition(" ")[2]
-        example = self.example or EXAMPLES.get(name)
+        example = self.example_arguments or EXAMPLES.get(name)
         if example is None:
             return super().format_help()
         before = f", {EXAMPLE_PREREQUISITES[name]}" if name in EXAMPLE_PREREQUISITES else ""
@@ -120,13 +120,20 @@ def declare_argument(
 
     alias : second name of the option
     """
-    if "default" in options:
-        default = options["default"]
-        help_text += f" (default: {f'{default:g}' if value_type is float else default})"
+    help_text += format_default(options.get("default"))
     names = [argument_name, alias] if alias else [argument_name]
     parser.add_argument(
         *names, type=value_type, metavar=metavar or _METAVAR_BY_TYPE[value_type], help=help_text, **options
     )
+
+
+def format_default(default: object) -> str:
+    """Format the end of a help text that names a default value; empty if there is none."""
+    if default in (None, []):
+        return ""
+    values = default if isinstance(default, list) else [default]
+    texts = (f"{value:g}" if isinstance(value, float) else str(value) for value in values)
+    return f" (default: {' '.join(texts)})"
 
 
 def declare_command(
@@ -141,26 +148,26 @@ def declare_command(
     return sub
 
 
-def format_sentence(text: str) -> str:
+def format_sentence(help_text: str) -> str:
     """Format a help text as a sentence: first letter capital, full stop at the end."""
-    return f"{text[0].upper()}{text[1:]}{'' if text.endswith('.') else '.'}"
+    return f"{help_text[0].upper()}{help_text[1:]}{'' if help_text.endswith('.') else '.'}"
 
 
-def option_of_setting(args: argparse.Namespace, setting: str) -> str:
+def find_option_of_argument(args: argparse.Namespace, argument_name: str) -> str:
     """Command-line option that sets a function argument named in an error message.
 
     `args.options` maps an argument name to its option, if the two names differ.
     """
-    return format_option_flag(getattr(args, "options", {}).get(setting, setting))
+    return format_option_flag(getattr(args, "options", {}).get(argument_name, argument_name))
 
 
-def parse_joint_name(text: str) -> str:
+def parse_joint_name(joint_name_text: str) -> str:
     """Parse the name of a joint: `bolted-joint` as `jointfmu new` has it, or `bolted_joint`."""
-    return text.replace("-", "_")
+    return joint_name_text.replace("-", "_")
 
 
-def declare_settings(parser: argparse.ArgumentParser) -> None:
-    """Declare the option `--set NAME=VALUE ...`, which sets parameters."""
+def declare_set_option(parser: argparse.ArgumentParser, help_text: str) -> None:
+    """Declare the option `--set NAME=VALUE ...`."""
     parser.add_argument(
         "--set",
         dest="settings",
@@ -169,19 +176,19 @@ def declare_settings(parser: argparse.ArgumentParser) -> None:
         type=_parse_setting_argument,
         default=[],
         metavar="NAME=VALUE",
-        help="set parameters (SI units)",
+        help=help_text,
     )
     parser.set_defaults(options={"settings": "set"})
 
 
-def parse_setting(text: str) -> tuple[str, Any]:
+def parse_setting(setting_text: str) -> tuple[str, Any]:
     """Parse `NAME=VALUE` of the command line; the value is a number, true, false or a word.
 
     Raises ValueError if there is no `=` or no name.
     """
-    name, equals, value = text.partition("=")
+    name, equals, value = setting_text.partition("=")
     if not equals or not name.strip():
-        raise ValueError(f"{text!r} is not a setting; expected NAME=VALUE")
+        raise ValueError(f"{setting_text!r} is not a setting; expected NAME=VALUE")
     value = value.strip()
     if value.lower() in ("true", "false"):
         return name.strip(), value.lower() == "true"
@@ -191,9 +198,9 @@ def parse_setting(text: str) -> tuple[str, Any]:
         return name.strip(), value
 
 
-def _parse_setting_argument(text: str) -> tuple[str, object]:
+def _parse_setting_argument(setting_text: str) -> tuple[str, object]:
     """Parse `NAME=VALUE` for argparse, which needs its own error class."""
     try:
-        return parse_setting(text)
+        return parse_setting(setting_text)
     except ValueError as error:
         raise argparse.ArgumentTypeError(str(error)) from None

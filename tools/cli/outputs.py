@@ -12,7 +12,7 @@ from jointfmu.files.writing import is_standard_output
 from ..common import plots
 from .command import Parser, declare_argument
 
-FORCE_OPTION_HELP = "replace files that jointfmu did not write, or that were edited"
+FORCE_OPTION_HELP = "also replace existing files that jointfmu did not write, or that were edited"
 """Help text of the option `--force`."""
 
 
@@ -37,33 +37,37 @@ def declare_output(
         parser.add_argument("--force", action="store_true", help=FORCE_OPTION_HELP)
 
 
-def check_command_outputs(outputs: Mapping[str, FileKind], args: argparse.Namespace) -> None:
+def check_command_outputs(output_file_kinds: Mapping[str, FileKind], args: argparse.Namespace) -> None:
     """Raise ValueError before the work starts if a command may not or cannot write one of its outputs.
 
-    outputs : {argument: kind of file} as declared
+    output_file_kinds : {argument: kind of file} as declared
     """
-    stated = {name: getattr(args, name) for name in outputs if getattr(args, name) is not None}
-    files = {f"--{name}": path for name, path in stated.items() if outputs[name] is not OUTPUT_FOLDER}
-    check_input_overwrite(files.values(), args, outputs)
+    stated = {name: getattr(args, name) for name in output_file_kinds if getattr(args, name) is not None}
+    files = {
+        f"--{name}": path for name, path in stated.items() if output_file_kinds[name] is not OUTPUT_FOLDER
+    }
+    check_input_overwrite(files.values(), args, output_file_kinds)
     for (option, path), (other_option, other_path) in combinations(files.items(), 2):
         if is_same_file(path, other_path) and not path.is_char_device():
             raise ValueError(f"{option} {path}: {other_option} writes the same file; state two files")
     for name, path in stated.items():
         if args.json and is_standard_output(path):
             raise ValueError(f"--{name} {path}: --json writes to the same place; state another file")
-        if outputs[name] is PICTURE_FILE:
+        if output_file_kinds[name] is PICTURE_FILE:
             plots.check_picture_path(path)
-        check_output(path, outputs[name], getattr(args, "force", False))
+        check_output(path, output_file_kinds[name], getattr(args, "force", False))
 
 
-def check_input_overwrite(files: Iterable[Path], args: argparse.Namespace, outputs: Iterable[str]) -> None:
+def check_input_overwrite(
+    output_paths: Iterable[Path], args: argparse.Namespace, output_arguments: Iterable[str]
+) -> None:
     """Raise ValueError if a file to be written is also an input of the command.
 
     Every existing file that the command line names counts as an input, except the outputs.
     """
-    stated = (value for name, value in vars(args).items() if name not in outputs)
+    stated = (value for name, value in vars(args).items() if name not in output_arguments)
     inputs = [path for value in stated for path in _iterate_named_files(value)]
-    for path in files:
+    for path in output_paths:
         if not path.is_char_device() and any(is_same_file(path, source) for source in inputs):
             raise ValueError(f"{path}: is also an input of this command; state another file")
 

@@ -42,7 +42,7 @@ class CommandLineParser(Parser):
         words = _insert_subcommand(list(sys.argv[1:] if args is None else args))
         parsed, unknown = super().parse_known_args(words, namespace)
         if unknown:
-            hint = suggest_word(unknown[0].partition("=")[0], _option_names(self, words))
+            hint = suggest_word(unknown[0].partition("=")[0], _list_option_names(self, words))
             self.error(f"unrecognized arguments: {' '.join(unknown)}{hint}")
         return parsed
 
@@ -59,7 +59,7 @@ class CommandLineParser(Parser):
         formatter.start_section("options")
         formatter.add_arguments([a for a in self._actions if a.option_strings])
         formatter.end_section()
-        formatter.add_text("jointfmu COMMAND --help has the options of a command and an example")
+        formatter.add_text("jointfmu COMMAND --help lists the options of a command and shows an example")
         return formatter.format_help()
 
 
@@ -93,9 +93,9 @@ def _iterate_parsers(parser: argparse.ArgumentParser) -> Iterator[argparse.Argum
             yield from _iterate_parsers(sub)
 
 
-def _option_names(parser: argparse.ArgumentParser, words: Sequence[str]) -> list[str]:
+def _list_option_names(parser: argparse.ArgumentParser, command_line_words: Sequence[str]) -> list[str]:
     """Long options of the command (and sub-command) at the start of the words of a command line."""
-    for word in words:
+    for word in command_line_words:
         subs = [sub for sub in _subparser_actions(parser) if word in sub.choices]
         if not subs:
             break
@@ -103,27 +103,31 @@ def _option_names(parser: argparse.ArgumentParser, words: Sequence[str]) -> list
     return [name for action in parser._actions for name in action.option_strings if name.startswith("--")]
 
 
-def _insert_subcommand(words: list[str]) -> list[str]:
+def _insert_subcommand(command_line_words: list[str]) -> list[str]:
     """Insert the default sub-command into the words of a command line if they name none."""
-    names = DEFAULT_SUBCOMMANDS.get(words[0]) if words else None
-    if names is None or (words[1:2] and words[1] in (*names, "-h", "--help")):
-        return words
-    return [words[0], names[0], *words[1:]]
+    names = DEFAULT_SUBCOMMANDS.get(command_line_words[0]) if command_line_words else None
+    if names is None or (command_line_words[1:2] and command_line_words[1] in (*names, "-h", "--help")):
+        return command_line_words
+    return [command_line_words[0], names[0], *command_line_words[1:]]
 
 
-def build_parser(words: Sequence[str] = ()) -> CommandLineParser:
+def build_parser(command_line_words: Sequence[str] = ()) -> CommandLineParser:
     """Build the parser of the command that the words begin with.
 
     If the words name no command, the parser has all commands; building it takes longer.
     """
-    top = CommandLineParser(prog="jointfmu", description="Joint stiffness from fractal surface roughness.")
+    top = CommandLineParser(
+        prog="jointfmu",
+        description="Make and run FMUs of the stiffness and friction of joints, from the roughness of their "
+        "surfaces.",
+    )
     top.add_argument("--version", action="version", version=f"jointfmu {__version__}")
-    text = f"print a script for command completion in a shell: {', '.join(COMPLETION_SHELLS)}"
+    text = f"print a script that completes commands and options in a shell: {', '.join(COMPLETION_SHELLS)}"
     top.add_argument(
         "--completion", action=PrintCompletionScript, choices=COMPLETION_SHELLS, metavar="SHELL", help=text
     )
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND", parser_class=Parser)
-    for name in words[:1] if {*words[:1]} & {*COMMANDS} else COMMANDS:
+    for name in command_line_words[:1] if {*command_line_words[:1]} & {*COMMANDS} else COMMANDS:
         module = import_module(f"jointfmu_tools.cli.commands.{COMMAND_MODULES.get(name, name)}")
         (getattr(module, f"add_{name}_command") if name in COMMAND_MODULES else module.add_command)(commands)
     return top

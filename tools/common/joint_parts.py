@@ -34,7 +34,7 @@ TOOL_NAMES = (
 class JointToolModules:
     """Tool modules of one joint: which module of its folder serves which tool.
 
-    package      : name of the package that is the joint's folder
+    package_name : name of the package that is the joint's folder
     module_names : tools that are served by a module of the same name
     modules      : {tool: name of its module}, for tools served by a module of another name
 
@@ -42,23 +42,23 @@ class JointToolModules:
     module with the name of a tool that is not in `module_names`.
     """
 
-    def __init__(self, package: str, module_names: Sequence[str], **modules: str) -> None:
-        self.package, self.modules = package, {name: name for name in module_names} | modules
-        existing = {module.name for module in iter_modules([str(self.folder)])}
-        faults = {name: "is of no tool" for name in self.modules if name not in TOOL_NAMES}
+    def __init__(self, package_name: str, module_names: Sequence[str], **modules: str) -> None:
+        self.package, self.modules = package_name, {name: name for name in module_names} | modules
+        existing = {module.name for module in iter_modules([str(self.joint_folder)])}
+        faults = {name: "is a part that no tool uses" for name in self.modules if name not in TOOL_NAMES}
         faults |= dict.fromkeys(
             existing & {*TOOL_NAMES} - {*module_names}, "is a part that its __init__.py must name"
         )
-        faults |= {name: "is not there" for name in self.modules.values() if name not in existing}
+        faults |= {name: "has no module" for name in self.modules.values() if name not in existing}
         for name, text in faults.items():
-            raise ImportError(f"{package}.{name} {text}; parts are {', '.join(TOOL_NAMES)}")
+            raise ImportError(f"{package_name}.{name} {text}; expected parts of {', '.join(TOOL_NAMES)}")
 
     @property
-    def folder(self) -> Path:
+    def joint_folder(self) -> Path:
         """Path of the joint's folder."""
         return Path(str(import_module(self.package).__file__)).parent
 
-    def load_module(self, tool_name: str) -> ModuleType | None:
+    def load_joint_module(self, tool_name: str) -> ModuleType | None:
         """Import the module of this joint for a tool; None if the joint has no such module."""
         return (
             import_module(f"{self.package}.{self.modules[tool_name]}") if tool_name in self.modules else None
@@ -71,4 +71,4 @@ PARTS: dict[str, JointToolModules] = {}
 
 def load_tool_module(joint_kind: "JointKind", tool_name: str) -> ModuleType | None:
     """Import the module of a joint for a tool; None if the joint has no such module."""
-    return PARTS[joint_kind.name].load_module(tool_name) if joint_kind.name in PARTS else None
+    return PARTS[joint_kind.name].load_joint_module(tool_name) if joint_kind.name in PARTS else None

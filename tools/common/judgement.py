@@ -22,30 +22,32 @@ from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array, Number
 
 MAX_STIFFNESS_OVER_ESTIMATE = 3.0
-"""Factor [1] above or below the estimate p/(GAMMA h) from roughness that makes a stiffness doubtful."""
+"""Factor [1] above or below the estimate from roughness that makes a stiffness doubtful."""
 
 
 @dataclass(frozen=True, slots=True)
 class StiffnessComparison:
-    """Stiffness of an interface law, compared with the estimate p/(GAMMA h) from roughness.
+    """Stiffness of an interface law, compared with Persson's estimate p/(gamma h) from the roughness.
 
-    rms_height : [m] rms height of both surfaces combined
-    pressure   : (n) [Pa] > 0
-    stiffness  : (n) [N/m3] stiffness per area of the law, times the scale of the joint
+    The symbols are pressure p, rms height h and the constant gamma = PERSSON_GAMMA.
+
+    rms_height       : [m] rms height h of both surfaces combined
+    nominal_pressure : (n) p [Pa] > 0
+    normal_stiffness : (n) [N/m3] stiffness per area of the law, times the ratio of joint to law stiffness
     """
 
     rms_height: float
-    pressure: Array
-    stiffness: Array
+    nominal_pressure: Array
+    normal_stiffness: Array
 
     @property
     def stiffness_over_estimate(self) -> Array:
-        """Stiffness over the estimate p/(GAMMA h) (n) [1]."""
-        return np.asarray(self.stiffness / predicted_stiffness(self.pressure, self.rms_height))
+        """Ratio (n) [1] of the stiffness to Persson's estimate from pressure and rms height."""
+        return np.asarray(self.normal_stiffness / predicted_stiffness(self.nominal_pressure, self.rms_height))
 
     @property
     def is_doubtful(self) -> bool:
-        """Whether stiffness over estimate, or its inverse, exceeds its limit at any pressure."""
+        """Whether the ratio of stiffness to estimate, or its inverse, exceeds its limit at any pressure."""
         return bool(
             np.any(
                 (self.stiffness_over_estimate > MAX_STIFFNESS_OVER_ESTIMATE)
@@ -54,7 +56,7 @@ class StiffnessComparison:
         )
 
     def __str__(self) -> str:
-        at = f"at {_format_range(self.pressure / 1e6)} MPa, h = {1e6 * self.rms_height:.3g} um"
+        at = f"at {_format_range(self.nominal_pressure / 1e6)} MPa, h = {1e6 * self.rms_height:.3g} um"
         return (
             f"stiffness by the law: {_format_range(self.stiffness_over_estimate)} times the roughness "
             f"estimate p/({PERSSON_GAMMA:g} h) {at}"
@@ -63,9 +65,9 @@ class StiffnessComparison:
     def to_json(self) -> dict[str, Any]:
         """JSON object of the comparison: rms height; pressure, stiffness, estimate, ratio of each point."""
         columns = (
-            self.pressure,
-            self.stiffness,
-            predicted_stiffness(self.pressure, self.rms_height),
+            self.nominal_pressure,
+            self.normal_stiffness,
+            predicted_stiffness(self.nominal_pressure, self.rms_height),
             self.stiffness_over_estimate,
         )
         names = ("pressure", "stiffness", "expected", "ratio")
@@ -88,7 +90,7 @@ class Plausibility:
         if self.stiffness_comparison is not None:
             yield str(self.stiffness_comparison)
 
-    def with_warnings(self, extra_warnings: Sequence[str]) -> "Plausibility":
+    def prepend_warnings(self, extra_warnings: Sequence[str]) -> "Plausibility":
         """Return a copy whose warnings are the extra ones, then those of this object."""
         return Plausibility(self.stiffness_comparison, (*extra_warnings, *self.warnings))
 
@@ -110,8 +112,8 @@ def find_rms_height(parameter_file: ParameterFile) -> float | None:
 
 
 def assess_law_stiffness(
-    law: InterfaceLaw,
-    pressures: Sequence[float],
+    interface_law: InterfaceLaw,
+    nominal_pressures: Sequence[float],
     rms_height: float | None,
     peak_pressure: float = 0.0,
     joint_to_law_stiffness_ratio: Sequence[float] | float = 1.0,
@@ -119,29 +121,31 @@ def assess_law_stiffness(
 ) -> Plausibility:
     """Assess the stiffness of an interface law at nominal pressures [Pa].
 
-    pressures             : (n) [Pa]; pressures of zero or infinity are ignored
-    rms_height            : [m] combined rms height of both surfaces; None: unknown
-    peak_pressure         : [Pa] largest pressure, if `pressures` are mean values
-    joint_to_law_stiffness_ratio : stiffness of the joint over stiffness of the law [1], one value or one
-                            per pressure
-    warn_outside_validity : also warn about pressures outside the range of validity
+    nominal_pressures            : (n) [Pa]; pressures of zero or infinity are ignored
+    rms_height                   : [m] combined rms height of both surfaces; None: unknown
+    peak_pressure                : [Pa] largest pressure, if `nominal_pressures` are mean values
+    joint_to_law_stiffness_ratio : stiffness of the joint over stiffness of the law [1], one value or one per
+                                   pressure
+    warn_outside_validity        : also warn about pressures outside the range of validity
     """
-    nominal = np.asarray(pressures, dtype=np.float64)
+    nominal = np.asarray(nominal_pressures, dtype=np.float64)
     in_contact = (nominal > 0.0) & (nominal < np.inf)
     p, factor = nominal[in_contact], np.broadcast_to(joint_to_law_stiffness_ratio, nominal.shape)[in_contact]
     comparison = None
     if rms_height is not None and p.size:
-        comparison = StiffnessComparison(rms_height, p, factor * stiffness_curve(law, p)[0])
+        comparison = StiffnessComparison(rms_height, p, factor * stiffness_curve(interface_law, p)[0])
     highest = float(np.max(p, initial=peak_pressure))
     lowest = float(np.min(p, initial=highest))
     warnings = (
-        find_validity_violations(law, highest, lowest) if warn_outside_validity and highest > 0.0 else []
+        find_validity_violations(interface_law, highest, lowest)
+        if warn_outside_validity and highest > 0.0
+        else []
     )
     if rms_height is not None and rms_height > 2.0 * MAX_ROUGHNESS_HEIGHT:
         warnings.insert(
             0,
-            f"h = {rms_height:.3g} m is not a roughness: faces that are joined have up to "
-            f"{MAX_ROUGHNESS_HEIGHT:g} m each",
+            f"h = {rms_height:.3g} m is too large for a roughness: faces that are joined have up to "
+            f"{MAX_ROUGHNESS_HEIGHT:g} m each; check its unit",
         )
     if comparison is not None and comparison.is_doubtful:
         warnings.append(
@@ -153,12 +157,12 @@ def assess_law_stiffness(
     return Plausibility(comparison, tuple(warnings))
 
 
-def law_rms_height(law: InterfaceLaw) -> Number | None:
+def law_rms_height(interface_law: InterfaceLaw) -> Number | None:
     """Combined rms height h [m] of an interface law; None if the law has no such parameter."""
-    return getattr(law, "h", None)
+    return getattr(interface_law, "h", None)
 
 
-def _format_range(values: Array) -> str:
+def _format_range(range_values: Array) -> str:
     """Format numbers as one value, or as their smallest and largest."""
-    low, high = float(np.min(values)), float(np.max(values))
+    low, high = float(np.min(range_values)), float(np.max(range_values))
     return f"{low:.3g}" if f"{low:.3g}" == f"{high:.3g}" else f"{low:.3g} to {high:.3g}"

@@ -41,22 +41,22 @@ class Option:
     unit_option: str = ""
 
 
-def format_option_flag(name: str) -> str:
+def format_option_flag(argument_name: str) -> str:
     """Option of the command line that sets an argument: `--rated-torque` for `rated_torque`."""
-    return "--" + name.replace("_", "-")
+    return "--" + argument_name.replace("_", "-")
 
 
 @contextmanager
-def require_package(purpose: str, extra: str = "build") -> Iterator[None]:
+def require_package(package_purpose: str, extra_name: str = "build") -> Iterator[None]:
     """Context that turns a missing package into a one-line ValueError with the install command.
 
-    purpose : what the package is needed for, a verb
-    extra   : extra of jointfmu that installs the package
+    package_purpose : what the package is needed for, a verb
+    extra_name      : extra of jointfmu that installs the package
     """
     try:
         yield
     except ImportError as error:
         raise ValueError(
-            f"the package {error.name or error} is missing, needed to {purpose}; "
-            f"install it with: pip install 'jointfmu[{extra}]'"
+            f"the package {error.name or error} is missing, needed to {package_purpose}; "
+            f"install it with: pip install 'jointfmu[{extra_name}]'"
         ) from None

@@ -33,51 +33,56 @@ STYLE_SETTINGS: Any = {
     "legend.frameon": False,
 }
 """Settings of matplotlib for all figures."""
-RESOLUTION = 150
+PNG_RESOLUTION = 150
 """Resolution of a PNG [dots per inch]."""
 
 
-def check_picture_path(path: str | Path) -> None:
+def check_picture_path(picture_path: str | Path) -> None:
     """Raise ValueError if the file name has no picture format, or if matplotlib is missing.
 
     Call it before long work.
     """
-    if Path(path).suffix.lower() not in PICTURE_FORMATS:
-        raise ValueError(f"{path}: suffix {Path(path).suffix!r} is not a picture, allowed are .png, .svg")
-    _load_settings()
+    if Path(picture_path).suffix.lower() not in PICTURE_FORMATS:
+        raise ValueError(
+            f"{picture_path}: suffix {Path(picture_path).suffix!r} is not that of a picture, allowed are "
+            ".png, .svg"
+        )
+    _load_matplotlib_settings()
 
 
-def choose_unit(unit: str, values: NDArray[np.float64]) -> tuple[str, float]:
+def choose_plot_unit(si_unit: str, si_values: NDArray[np.float64]) -> tuple[str, float]:
     """Choose a display unit by the largest of some values. Returns the unit and the factor to it."""
-    name = display_unit(unit, float(np.max(np.abs(values), initial=0.0)))
-    return name, UNITS[unit].display_factors[name]
+    name = display_unit(si_unit, float(np.max(np.abs(si_values), initial=0.0)))
+    return name, UNITS[si_unit].display_factors[name]
 
 
 @contextmanager
-def open_figure(path: str | Path, figure_size: tuple[float, float] = (7.2, 4.2)) -> Iterator["Figure"]:
+def open_figure(
+    picture_path: str | Path, figure_size: tuple[float, float] = (7.2, 4.2)
+) -> Iterator["Figure"]:
     """Create a figure of a size [inch] in the common style; it is saved at the end of the `with` block.
 
     with plots.open_figure("ramp.png") as figure:
         axes = figure.subplots()
     """
-    check_picture_path(path)
+    check_picture_path(picture_path)
     from matplotlib.figure import Figure
 
-    with apply_style():
+    with apply_plot_style():
         figure = Figure(figsize=figure_size, layout="constrained")
         yield figure
-        save_figure(figure, path)
+        save_figure(figure, picture_path)
 
 
 @contextmanager
-def apply_style() -> Iterator[None]:
+def apply_plot_style() -> Iterator[None]:
     """Apply the common style in a `with` block, or as a decorator of a function that draws.
 
     At the end, only the settings of the style are restored. Other settings that change inside the block keep
     their new value: the first figure of a notebook switches pyplot to interactive mode.
     Raises ValueError if matplotlib is missing.
     """
-    settings = _load_settings()
+    settings = _load_matplotlib_settings()
     former = {name: settings[name] for name in STYLE_SETTINGS}
     settings.update(STYLE_SETTINGS)
     try:
@@ -86,7 +91,7 @@ def apply_style() -> Iterator[None]:
         settings.update(former)
 
 
-def _load_settings() -> Any:
+def _load_matplotlib_settings() -> Any:
     try:
         from matplotlib import rcParams
     except ImportError:
@@ -118,13 +123,13 @@ def _close_in_notebook(figure: "Figure", **_: object) -> dict[str, str]:
     return {}
 
 
-def save_figure(figure: "Figure", path: str | Path) -> None:
+def save_figure(figure: "Figure", picture_path: str | Path) -> None:
     """Save a figure as .png or .svg. A failure leaves no file."""
-    check_picture_path(path)
-    suffix = Path(path).suffix.lower()
+    check_picture_path(picture_path)
+    suffix = Path(picture_path).suffix.lower()
     data = io.BytesIO()
     metadata = (
         {"Date": None, "Description": PROGRAM_MARK} if suffix == ".svg" else {"Description": PROGRAM_MARK}
     )
-    figure.savefig(data, format=suffix[1:], dpi=RESOLUTION, metadata=metadata)
-    write_bytes(path, data.getvalue())
+    figure.savefig(data, format=suffix[1:], dpi=PNG_RESOLUTION, metadata=metadata)
+    write_bytes(picture_path, data.getvalue())

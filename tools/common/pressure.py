@@ -19,14 +19,15 @@ from .judgement import Plausibility, assess_law_stiffness, find_rms_height
 class NominalPressureModel:
     """Nominal contact pressure of a kind of joint as a function of its load.
 
-    load_variable   : name of the input or output that is the load
-    default_load    : parameter set -> load [SI] that is used if the user states none
-    mean_pressure   : (parameter set, load) -> nominal pressure [Pa] at which the stiffness is judged
-    peak_pressure   : (parameter set, load) -> greatest nominal pressure [Pa]
+    load_variable                : name of the input or output that is the load
+    default_load                 : parameter set -> load [SI] that is used if the user states none
+    mean_pressure                : (parameter set, load) -> nominal pressure [Pa] at which the stiffness is
+                                   judged
+    peak_pressure                : (parameter set, load) -> greatest nominal pressure [Pa]
     joint_to_law_stiffness_ratio : (parameter set, load) -> joint stiffness over stiffness of the interface
-                      law at the mean pressure [1]
-    load_capacity   : parameter file -> (largest load [SI] of the loaded parts, name of this limit), or
-                      None if not known
+                                   law at the mean pressure [1]
+    load_capacity                : parameter file -> (largest load [SI] of the loaded parts, name of this
+                                   limit), or None if not known
     """
 
     load_variable: str
@@ -37,63 +38,66 @@ class NominalPressureModel:
     load_capacity: Callable[..., tuple[float, str] | None] = lambda parameter_file: None
 
 
-def pressure_over_area(parameters: Any, load: float) -> float:
-    """Pressure [Pa] of a load [N] distributed uniformly over the nominal area."""
-    return float(load / parameters.A_0)
+def uniform_pressure(joint_parameters: Any, joint_load: float) -> float:
+    """Nominal pressure [Pa] of a load [N] that is distributed uniformly over the nominal area."""
+    return float(joint_load / joint_parameters.A_0)
 
 
 FLANK_PRESSURE_MODEL = NominalPressureModel(
     load_variable="f",
     default_load=lambda joint: min(3e3, 0.1 * joint.max_pressure * joint.A_0),
-    mean_pressure=pressure_over_area,
-    peak_pressure=pressure_over_area,
+    mean_pressure=uniform_pressure,
+    peak_pressure=uniform_pressure,
 )
 """Nominal pressure of gear flanks under a normal force f [N]."""
 
 
 def find_nominal_pressure_model(joint_kind: JointKind) -> NominalPressureModel | None:
-    """Nominal pressure that the joint's folder defines; None if it defines none."""
+    """Model of the nominal pressure that the joint's folder defines; None if it defines none."""
     module = load_tool_module(joint_kind, "pressure")
     return module.NOMINAL_PRESSURE if module else None
 
 
 def judge_joint_stiffness(
-    parameter_file: ParameterFile, loads: Sequence[float] | None = None
+    parameter_file: ParameterFile, joint_loads: Sequence[float] | None = None
 ) -> Plausibility:
-    """Judge the stiffness of a joint under loads.
+    """Compare the stiffness of a joint under loads with the estimate from roughness, and list warnings.
 
-    loads : values of `NominalPressureModel.load_variable` [SI]; None: the start value in the file, or, if it
-            is zero, the default load. At the default load the stiffness is only compared with the estimate
-            from roughness
+    joint_loads : values of `NominalPressureModel.load_variable` [SI]; None: the start value in the file, or,
+                  if
+                  it is zero, the default load. At the default load the stiffness is only compared with the
+                  estimate from roughness
     """
     kind = KINDS[parameter_file.joint]
     nominal = find_nominal_pressure_model(kind)
     if nominal is None or kind.extract_law(parameter_file.values) is None:
         return Plausibility(None, ())
-    if loads is None and parameter_file.start_value(nominal.load_variable) > 0.0:
-        loads = [parameter_file.start_value(nominal.load_variable)]
+    if joint_loads is None and parameter_file.start_value(nominal.load_variable) > 0.0:
+        joint_loads = [parameter_file.start_value(nominal.load_variable)]
     law, h, limits = (
         kind.extract_law(parameter_file.values),
         find_rms_height(parameter_file),
-        loads is not None,
+        joint_loads is not None,
     )
-    if loads is None:
-        loads = [nominal.default_load(parameter_file.values)]
-    loads = [load for load in loads if load > 0.0]
+    if joint_loads is None:
+        joint_loads = [nominal.default_load(parameter_file.values)]
+    joint_loads = [load for load in joint_loads if load > 0.0]
     judgement = assess_law_stiffness(
         law,
-        [nominal.mean_pressure(parameter_file.values, load) for load in loads],
+        [nominal.mean_pressure(parameter_file.values, load) for load in joint_loads],
         h,
-        max((nominal.peak_pressure(parameter_file.values, load) for load in loads), default=0.0),
-        [nominal.joint_to_law_stiffness_ratio(parameter_file.values, load) for load in loads],
+        max((nominal.peak_pressure(parameter_file.values, load) for load in joint_loads), default=0.0),
+        [nominal.joint_to_law_stiffness_ratio(parameter_file.values, load) for load in joint_loads],
         limits,
     )
     capacity = nominal.load_capacity(parameter_file)
-    return judgement.with_warnings(warn_overload(nominal.load_variable, max(loads, default=0.0), capacity))
+    return judgement.prepend_warnings(
+        warn_overload(nominal.load_variable, max(joint_loads, default=0.0), capacity)
+    )
 
 
 def warn_missing_members(parameter_file: ParameterFile) -> list[str]:
-    """List a warning that an exported file has only the interface, if the joint has elastic members."""
+    """List a warning if an exported file has only the interface of a joint, and not its elastic members."""
     if not getattr(parameter_file.values, "has_elastic_members", False):
         return []
     return [
@@ -103,11 +107,13 @@ def warn_missing_members(parameter_file: ParameterFile) -> list[str]:
     ]
 
 
-def warn_overload(load_name: str, load: float, load_capacity: tuple[float, str] | None) -> list[str]:
+def warn_overload(
+    load_variable: str, joint_load: float, load_capacity: tuple[float, str] | None
+) -> list[str]:
     """List a warning if a load [N] is above the load capacity; otherwise the list is empty.
 
     load_capacity : (largest load [N], name of this limit), or None if not known
     """
-    if load_capacity is None or load <= load_capacity[0]:
+    if load_capacity is None or joint_load <= load_capacity[0]:
         return []
-    return [f"{load_name} = {load:g} N is above {load_capacity[0]:.4g} N, {load_capacity[1]}"]
+    return [f"{load_variable} = {joint_load:g} N is above {load_capacity[0]:.4g} N, {load_capacity[1]}"]

@@ -20,69 +20,69 @@ _MIN_KILO_VALUE = 1e4
 """Value in a display unit of stiffness with the prefix kilo from here on: 13.3 kN/um, not 1.33e+04 N/um."""
 
 
-def choose_display_unit(unit: str, typical_value: float) -> str:
+def choose_display_unit(si_unit: str, typical_value: float) -> str:
     """Choose the display unit of a variable by a typical value in SI units."""
-    if unit not in STIFFNESS_DISPLAY_UNITS:
-        return display_unit(unit, typical_value)
-    shown = STIFFNESS_DISPLAY_UNITS[unit]
-    return f"k{shown}" if abs(typical_value) * conversion_factor(unit, shown) >= _MIN_KILO_VALUE else shown
+    if si_unit not in STIFFNESS_DISPLAY_UNITS:
+        return display_unit(si_unit, typical_value)
+    shown = STIFFNESS_DISPLAY_UNITS[si_unit]
+    return f"k{shown}" if abs(typical_value) * conversion_factor(si_unit, shown) >= _MIN_KILO_VALUE else shown
 
 
-def format_unit(unit: str) -> str:
+def format_unit(si_unit: str) -> str:
     """Format a unit for display: N m, µm; empty for 1."""
-    return "" if unit == "1" else re.sub(r"\bu(?=[mNsJr])", "µ", unit.replace(".", " "))
+    return "" if si_unit == "1" else re.sub(r"\bu(?=[mNsJr])", "µ", si_unit.replace(".", " "))
 
 
-def format_quantity(value: Any, unit: str | None, digits: int = 6) -> tuple[str, str]:
+def format_quantity(si_value: Any, si_unit: str | None, significant_digits: int = 6) -> tuple[str, str]:
     """Format a value with its display unit; returns the text of the number and the unit."""
-    if isinstance(value, bool | str):
-        return str(value).lower(), ""
-    if np.ndim(value):
-        return describe_range(value), format_unit(unit or "1") if len(value) else ""
-    if unit is None:
-        return f"{value:g}", ""
-    shown = choose_display_unit(unit, value)
-    return f"{conversion_factor(unit, shown) * value:.{digits}g}", format_unit(shown)
+    if isinstance(si_value, bool | str):
+        return str(si_value).lower(), ""
+    if np.ndim(si_value):
+        return describe_range(si_value), format_unit(si_unit or "1") if len(si_value) else ""
+    if si_unit is None:
+        return f"{si_value:g}", ""
+    shown = choose_display_unit(si_unit, si_value)
+    return f"{conversion_factor(si_unit, shown) * si_value:.{significant_digits}g}", format_unit(shown)
 
 
-def align_columns(rows: Sequence[Sequence[str]], text_column_count: int | None = None) -> list[str]:
+def align_columns(text_rows: Sequence[Sequence[str]], text_column_count: int | None = None) -> list[str]:
     """Format rows of text cells as lines, columns as wide as their widest cell.
 
     text_column_count : number of columns of words at the left, aligned left; the others are aligned right;
                         None: all columns are words
     """
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    widths = [max(map(len, column)) for column in zip(*text_rows, strict=True)]
     signs = ["<" if text_column_count is None or i < text_column_count else ">" for i in range(len(widths))]
     pattern = "  ".join(f"{{:{sign}{width}}}" for sign, width in zip(signs, widths, strict=True))
-    return [pattern.format(*row).rstrip() for row in rows]
+    return [pattern.format(*row).rstrip() for row in text_rows]
 
 
-def format_facts(facts_by_name: Mapping[str, tuple[float, str, str]]) -> list[str]:
-    """Format facts about a joint, {name: (value, unit, meaning)}, as lines of text, one for each fact."""
+def format_derived_values(derived_values: Mapping[str, tuple[float, str, str]]) -> list[str]:
+    """Format derived values of a joint, {name: (value, unit, meaning)}, as lines of text."""
     return [
         f"{name:18} {value:.4g}{'' if unit == '1' else f' {unit}'}  {text}"
-        for name, (value, unit, text) in facts_by_name.items()
+        for name, (value, unit, text) in derived_values.items()
     ]
 
 
-def facts_to_json(facts_by_name: Mapping[str, tuple[float, str, str]]) -> dict[str, object]:
-    """Convert facts about a joint, {name: (value, unit, meaning)}, to a JSON object."""
-    return {name: {"value": v, "unit": u, "text": t} for name, (v, u, t) in facts_by_name.items()}
+def derived_values_to_json(derived_values: Mapping[str, tuple[float, str, str]]) -> dict[str, object]:
+    """Convert derived values of a joint, {name: (value, unit, meaning)}, to a JSON object."""
+    return {name: {"value": v, "unit": u, "text": t} for name, (v, u, t) in derived_values.items()}
 
 
 class ParameterFileEntry(NamedTuple):
     """Entry of a parameter file: a number in SI units or a choice, with meaning, origin and source.
 
-    unit   : SI unit; None for a choice
-    origin : kind of source, one of parameters.ORIGINS
+    si_unit      : SI unit; None for a choice
+    value_origin : kind of source, one of parameters.VALUE_ORIGINS
     """
 
-    name: str
-    value: Any
-    unit: str | None
-    meaning: str
-    origin: str
-    source: str
+    entry_name: str
+    entry_value: Any
+    si_unit: str | None
+    entry_meaning: str
+    value_origin: str
+    value_source: str
 
 
 def _format_source(parameter_file: ParameterFile, parameter_name: str) -> str:

@@ -7,17 +7,17 @@ from numpy.typing import NDArray
 
 
 def decimate_table(
-    fixed_nodes: Collection[int], segment_fits: Callable[[int, int], bool]
+    required_nodes: Collection[int], is_segment_allowed: Callable[[int, int], bool]
 ) -> NDArray[np.intp]:
-    """Select nodes of a table, from 0 to the last fixed node, so that segments are as long as allowed.
+    """Select nodes of a table, from 0 to the last required node, so that segments are as long as allowed.
 
-    fixed_nodes  : indices of nodes that must be kept
-    segment_fits : (i, j) -> whether one segment may replace the table from node i to node j > i + 1
+    required_nodes     : indices of nodes that must be kept
+    is_segment_allowed : (i, j) -> whether one segment may replace the table from node i to node j > i + 1
 
     Returns the indices of the selected nodes. The length of a segment is doubled while the segment fits, then
     refined by halving the increment. Neighbouring nodes are always a valid segment.
     """
-    ends = sorted(fixed_nodes)
+    ends = sorted(required_nodes)
     nodes = [0]
     while nodes[-1] < ends[-1]:
         i = nodes[-1]
@@ -25,7 +25,7 @@ def decimate_table(
         j, step = i + 1, 1
         while step:
             end = min(j + step, stop)
-            if end > j and segment_fits(i, end):
+            if end > j and is_segment_allowed(i, end):
                 j, step = end, 2 * step
             else:
                 step //= 2

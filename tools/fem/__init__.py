@@ -5,10 +5,10 @@ from contextlib import contextmanager
 
 
 @contextmanager
-def require_fem_packages(feature: str) -> Iterator[None]:
+def require_fem_packages(calculation_name: str) -> Iterator[None]:
     """Context manager for finite-element calculations: a missing package or library raises ValueError.
 
-    feature : name of the calculation in the message
+    calculation_name : name of the calculation in the message
 
     Inside, BLAS uses one thread. More threads gain little, and they wait for each other if other processes
     share the cores.
@@ -20,11 +20,11 @@ def require_fem_packages(feature: str) -> Iterator[None]:
             yield
     except ImportError as error:
         raise ValueError(
-            f"{feature} needs the finite elements (extra fem), which are not installed, "
+            f"{calculation_name} needs the finite elements (extra fem), which are not installed, "
             f"{error.name or error} is missing: pip install 'jointfmu[fem]'"
         ) from None
     except OSError as error:
         raise ValueError(
-            f"{feature} needs libraries of the system that are missing ({error}); on Debian and Ubuntu "
-            "install libglu1-mesa libgl1 libgomp1 libxcursor1 libxft2 libxinerama1"
+            f"{calculation_name} needs libraries of the system that are missing ({error}); on Debian and "
+            "Ubuntu install libglu1-mesa libgl1 libgomp1 libxcursor1 libxft2 libxinerama1"
         ) from None

@@ -25,7 +25,7 @@ MAX_RELATIVE_IMBALANCE = 1e-6
 Newton's method ends at 1e-8 or less, a factorisation leaves 1e-9. Loads without an equilibrium leave a value
 of order 1.
 """
-MIN_RELATIVE_MOTION = 1e-6
+MIN_RESTRAINED_OVER_BODY_MOTION = 1e-6
 """Smallest ratio [1] at which supports or contact restrain a rigid-body motion: rms displacement at the
 supports, or rms approach, over the rms displacement of the body. Round-off gives 1e-15; supports at the
 corners of a body, and its contact, give values of order 1."""
@@ -41,14 +41,14 @@ class RigidBodyBalance:
     rigid_motion_approach       : (q, m) [1] approach at the quadrature points for these motions
     unsupported_motion_approach : (q, k) [1] approach for the motions that no support stops in the computation
     total_load                  : [N] sum of the loads' magnitudes
-    hull_points                 : indices of the quadrature points on the convex hull of the contact
+    contact_hull_points         : indices of the quadrature points on the convex hull of the contact
     """
 
     generalised_load: Array
     rigid_motion_approach: Array
     unsupported_motion_approach: Array
     total_load: float
-    hull_points: IndexArray
+    contact_hull_points: IndexArray
 
     @classmethod
     def from_loads(
@@ -74,7 +74,10 @@ class RigidBodyBalance:
         rigid_approach = np.hstack([trace @ m for m, trace in zip(motions, approach_matrices, strict=True)])
         at_supports = [m[rows] for m, rows in zip(motions, supported_unknowns, strict=True)]
         unsupported = block_diag(
-            *[null_space(rows, rcond=MIN_RELATIVE_MOTION) if rows.size else np.eye(6) for rows in at_supports]
+            *[
+                null_space(rows, rcond=MIN_RESTRAINED_OVER_BODY_MOTION) if rows.size else np.eye(6)
+                for rows in at_supports
+            ]
         )
         balanced = unsupported if supports_carry_load else np.eye(force.size)
         scale = sum(float(np.abs(load).sum()) for load in nodal_loads)
@@ -94,8 +97,9 @@ class RigidBodyBalance:
         contact_force, imbalance = self._optimise_contact_forces()
         if imbalance > MAX_RELATIVE_IMBALANCE:
             raise RuntimeError(
-                f"the loads do not balance: without tension in the contact, a fraction of {imbalance:.2g} is "
-                f"left over, allowed is {MAX_RELATIVE_IMBALANCE:g}"
+                "a contact without friction and tension cannot balance the loads: a fraction of "
+                f"{imbalance:.2g} is left over, allowed is {MAX_RELATIVE_IMBALANCE:g}; expected a resultant "
+                "that presses inside the contact"
             )
         if contact_force <= MAX_RELATIVE_IMBALANCE:
             raise RuntimeError(
@@ -103,19 +107,19 @@ class RigidBodyBalance:
                 f"is more than {MAX_RELATIVE_IMBALANCE:g}"
             )
 
-    def check_contact_forces(self, contact_force: Array) -> None:
+    def check_contact_forces(self, contact_forces: Array) -> None:
         """Raise RuntimeError if contact forces (q) [N] >= 0 do not balance the loads or leave a body free."""
-        if not _has_independent_columns(self.unsupported_motion_approach[contact_force > 0.0]):
+        if not _has_independent_columns(self.unsupported_motion_approach[contact_forces > 0.0]):
             raise RuntimeError(
                 "the contact does not hold the bodies: it stays closed at "
-                f"{np.count_nonzero(contact_force)} of "
-                f"{contact_force.size} points"
+                f"{np.count_nonzero(contact_forces)} of {contact_forces.size} points; increase the preload "
+                "or reduce the moment"
             )
-        imbalance = float(np.abs(self.generalised_load - self.rigid_motion_approach.T @ contact_force).sum())
+        imbalance = float(np.abs(self.generalised_load - self.rigid_motion_approach.T @ contact_forces).sum())
         if not imbalance <= MAX_RELATIVE_IMBALANCE * self.total_load:
             raise RuntimeError(
                 f"the contact is not in equilibrium: it leaves {imbalance / self.total_load:.2g} times the "
-                f"loads unbalanced, allowed is {MAX_RELATIVE_IMBALANCE:g}"
+                f"loads unbalanced, allowed is {MAX_RELATIVE_IMBALANCE:g}; try another --refinement"
             )
 
     def _optimise_contact_forces(self) -> tuple[float, float]:
@@ -123,9 +127,11 @@ class RigidBodyBalance:
 
         Returns the sum of these forces and the remaining imbalance, both over the total load [1].
         """
-        corner_approach = self.rigid_motion_approach[self.hull_points].T
+        corner_approach = self.rigid_motion_approach[self.contact_hull_points].T
         slack = np.eye(self.generalised_load.size)
-        cost = np.concatenate([np.zeros(self.hull_points.size), np.ones(2 * self.generalised_load.size)])
+        cost = np.concatenate(
+            [np.zeros(self.contact_hull_points.size), np.ones(2 * self.generalised_load.size)]
+        )
         from scipy.optimize import linprog  # slow to import, and a linear joint needs no balance
 
         best = linprog(
@@ -134,13 +140,15 @@ class RigidBodyBalance:
             b_eq=self.generalised_load / self.total_load,
         )
         if best.status != 0:
-            raise RuntimeError(f"the equilibrium of the loads was not found: {best.message}")
-        return float(best.x[: self.hull_points.size].sum()), float(best.fun)
+            raise RuntimeError(
+                f"the equilibrium of the loads was not found, try another --refinement: {best.message}"
+            )
+        return float(best.x[: self.contact_hull_points.size].sum()), float(best.fun)
 
 
 def rigid_motions(body: ElasticBody) -> Array:
     """Six orthogonal rigid-body motions (n, 6) of a body, each of rms displacement 1 m at its nodes."""
-    motions: Array = qr(body.rigid_motions(), mode="economic")[0]
+    motions: Array = qr(body.rigid_body_motions(), mode="economic")[0]
     return np.asarray(motions * np.sqrt(body.unknown_count / 3.0))
 
 
@@ -154,4 +162,4 @@ def _has_independent_columns(rigid_motion_approach: Array) -> bool:
     if rigid_motion_approach.shape[0] < rigid_motion_approach.shape[1]:
         return False
     smallest = np.linalg.svd(rigid_motion_approach, compute_uv=False)[-1]
-    return bool(smallest > MIN_RELATIVE_MOTION * np.sqrt(rigid_motion_approach.shape[0]))
+    return bool(smallest > MIN_RESTRAINED_OVER_BODY_MOTION * np.sqrt(rigid_motion_approach.shape[0]))

@@ -8,11 +8,11 @@ from jointfmu.mechanics.footprint.distribution import PressureDistribution
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
-from ..inputs.fields.nodal_result import ContactField
+from ..inputs.fields.nodal_result import ContactPressureField
 from .contact import ContactInterface, ContactModel, ContactSolution, PressureLaw
 from .elasticity import ElasticBody
 from .geometry import Assembly, BodyGeometry
-from .mesh import PlanMesh, contact_mesh, extrude_body_mesh, find_contact_cells, mesh_plan_view
+from .mesh import PlanMesh, extrude_body_mesh, find_contact_cells, make_contact_mesh, mesh_plan_view
 
 
 @dataclass(frozen=True)
@@ -44,18 +44,20 @@ class BoltedContact:
             body = make_elastic_body(plan, assembly, side, refinement)
             bodies.append(body)
             heads.append(compute_bolt_head_loads(body, assembly))
-        interface = ContactInterface.from_mesh(contact_mesh(plan, find_contact_cells(plan, assembly)))
+        interface = ContactInterface.from_mesh(make_contact_mesh(plan, find_contact_cells(plan, assembly)))
         return cls(assembly, plan, tuple(bodies), interface, tuple(heads))
 
-    def solve(self, pressure_law: PressureLaw, preload: float, moment: float = 0.0) -> "JointSolution":
+    def solve_equilibrium(
+        self, pressure_law: PressureLaw, preload: float, moment: float = 0.0
+    ) -> "JointSolution":
         """Equilibrium under a preload [N] per bolt and a moment [N.m] about x."""
-        return self._solve_equilibrium(
+        return self._solve_contact_model(
             ContactModel(self.bodies, self.contact_interface, pressure_law), preload, moment
         )
 
-    def _solve_equilibrium(
+    def _solve_contact_model(
         self,
-        model: ContactModel,
+        contact_model: ContactModel,
         preload: float,
         moment: float,
         initial_solution: ContactSolution | None = None,
@@ -68,26 +70,26 @@ class BoltedContact:
         signs = (-1.0,) if len(self.bodies) == 1 else (1.0, -1.0)
         loads = [sign * head @ force for sign, head in zip(signs, self.bolt_head_loads, strict=True)]
         mean = float(force.sum() / self.contact_interface.quadrature_area.sum())
-        return JointSolution(self, force, model.solve(loads, mean, initial_solution))
+        return JointSolution(self, force, contact_model.solve_equilibrium(loads, mean, initial_solution))
 
 
 def make_elastic_body(
     plan_mesh: PlanMesh,
     assembly: Assembly,
-    side: int,
+    side_number: int,
     refinement: float = 1.0,
-    first_height: float | None = None,
+    first_element_height: float | None = None,
 ) -> ElasticBody:
-    """Elastic body on side 1 or 2 of an assembly, extruded from a plan mesh (see `extrude_body_mesh`)."""
-    body: BodyGeometry = assembly.side1 if side == 1 else assembly.side2
-    mesh = extrude_body_mesh(plan_mesh, assembly, side, refinement, first_height)
+    """Elastic body on side 1 or 2 of an assembly, extruded along z from the mesh of the plan view."""
+    body: BodyGeometry = assembly.side1 if side_number == 1 else assembly.side2
+    mesh = extrude_body_mesh(plan_mesh, assembly, side_number, refinement, first_element_height)
     return ElasticBody(mesh, body.E, body.nu, body.density)
 
 
 def compute_bolt_head_loads(body: ElasticBody, assembly: Assembly) -> Array:
     """Nodal load (n, bolts) [N/N] on a body for a unit force of each bolt along +z."""
-    boundaries, count = body.mesh.boundaries, len(assembly.bolts.positions)
-    return np.stack([body.uniform_load(boundaries[f"head{i + 1}"]) for i in range(count)], axis=1)
+    boundaries, count = body.mesh.boundaries, len(assembly.bolts.bolt_positions)
+    return np.stack([body.distribute_unit_force(boundaries[f"head{i + 1}"]) for i in range(count)], axis=1)
 
 
 @dataclass(frozen=True)
@@ -105,43 +107,43 @@ class JointSolution:
     def solve_load_case(self, preload: float, moment: float = 0.0) -> "JointSolution":
         """Equilibrium under another preload [N] per bolt and moment [N.m] about x.
 
-        Newton's method starts from this solution.
+        Newton's method starts from the present solution.
         """
-        return self.bolted_contact._solve_equilibrium(
-            self.contact_solution.model, preload, moment, self.contact_solution
+        return self.bolted_contact._solve_contact_model(
+            self.contact_solution.contact_model, preload, moment, self.contact_solution
         )
 
     @property
-    def contact_field(self) -> ContactField:
+    def contact_field(self) -> ContactPressureField:
         """Contact pressure [Pa], area [m2] and position [m] at the quadrature points of the contact."""
         interface = self.bolted_contact.contact_interface
-        return ContactField(
-            area=interface.quadrature_area,
-            position=interface.quadrature_position,
-            pressure=self.contact_solution.pressure,
+        return ContactPressureField(
+            nodal_area=interface.quadrature_area,
+            node_positions=interface.quadrature_position,
+            nodal_pressure=self.contact_solution.pressure,
         )
 
     @property
     def peak_pressure(self) -> float:
         """Largest nodal pressure [Pa], usually on the edge of a hole."""
-        return float(self.contact_solution.node_pressure.max())
+        return float(self.contact_solution.nodal_pressure.max())
 
     @property
     def pressure_between_bolts(self) -> tuple[Array, Array]:
         """Positions (k, 2) [m] midway between neighbouring bolts, and contact pressure (k) [Pa] there."""
-        positions = bolt_midpoints(self.bolted_contact.assembly.bolts.positions)
+        positions = bolt_midpoints(self.bolted_contact.assembly.bolts.bolt_positions)
         sides = (self.bolted_contact.assembly.side1, self.bolted_contact.assembly.side2)
-        solid = [side.layers()[0].is_solid(*positions.T) for side in sides]
+        solid = [side.layers()[0].is_in_material(*positions.T) for side in sides]
         positions = positions[solid[0] & solid[1]]
         return positions, self.contact_solution.pressure_at(positions) if len(positions) else np.zeros(0)
 
     @property
-    def stiffness(self) -> dict[str, float]:
+    def interface_stiffness(self) -> dict[str, float]:
         """Normal stiffness K_N [N/m] of the interface, bending stiffness K_rx, K_ry [N.m/rad] about x and y
         through its centroid."""
         field = self.contact_field
-        k = field.area * self.contact_solution.stiffness
-        x, y = (field.position - field.centroid).T
+        k = field.nodal_area * self.contact_solution.contact_stiffness
+        x, y = (field.node_positions - field.contact_centroid).T
         return {"K_N": float(k.sum()), "K_rx": float(k @ y**2), "K_ry": float(k @ x**2)}
 
 
@@ -167,8 +169,8 @@ SECOND_FIELD_OVER_UNLOADING_MOMENT = 1.0 / 3.0
 """Moment of the second pressure field over the moment that unloads a row of bolts [1], as in Zhao 2018."""
 
 
-def insert_contact_field(
-    parameter_file: ParameterFile, solution: JointSolution, preload: float, moment: float = 0.0
+def insert_contact_pressure(
+    parameter_file: ParameterFile, joint_solution: JointSolution, preload: float, moment: float = 0.0
 ) -> tuple[ParameterFile, PressureDistribution]:
     """Insert the computed pressure field into the parameters of a joint.
 
@@ -176,26 +178,33 @@ def insert_contact_field(
 
     Returns the parameters, and the normalised pressure distribution at all nodes.
 
-    solution : equilibrium at this preload [N] per bolt and moment [N.m]; the other field is solved from it
+    joint_solution : equilibrium at this preload [N] per bolt and moment [N.m], from which Newton's method
+                     starts for the other field
     """
     from ..inputs.fields.joint_parameters import (
-        insert_field,  # slow to import, and a linear joint has no field
+        insert_pressure_field,  # slow to import, and a linear joint has no field
     )
 
-    joint = solution.bolted_contact
+    joint = joint_solution.bolted_contact
     tilting = moment or SECOND_FIELD_OVER_UNLOADING_MOMENT * joint.assembly.max_moment(preload)
-    equal = solution.solve_load_case(preload).contact_field if moment else solution.contact_field
+    equal = joint_solution.solve_load_case(preload).contact_field if moment else joint_solution.contact_field
     tilted = (
-        solution.contact_field
+        joint_solution.contact_field
         if moment
-        else solution.solve_load_case(preload, tilting).contact_field
+        else joint_solution.solve_load_case(preload, tilting).contact_field
         if tilting
         else None
     )
     source = f"finite elements of the assembly {joint.assembly.name}"
-    bolts = joint.assembly.bolts.positions
+    bolts = joint.assembly.bolts.bolt_positions
     second = tilting or None
-    parameter_file, reduction = insert_field(
-        parameter_file, equal, preload, source, moment_field=tilted, moment=second, bolt_positions=bolts
+    parameter_file, reduction = insert_pressure_field(
+        parameter_file,
+        equal,
+        preload,
+        source,
+        moment_field=tilted,
+        bending_moment=second,
+        bolt_positions=bolts,
     )
     return replace(parameter_file, name=f"{parameter_file.name}, computed field"), reduction.full_distribution

@@ -44,15 +44,15 @@ class PressureLaw(Protocol):
 class ContactInterface:
     """Plane contact area of two bodies: finite-element basis and quadrature points.
 
-    basis                : finite-element basis of scikit-fem on a plane mesh [m]
-    nodes                : (2, n) [m]; the corners of the mesh come first
+    finite_element_basis : finite-element basis of scikit-fem on a plane mesh [m]
+    node_positions       : (2, n) [m]; the corners of the mesh come first
     interpolation_matrix : (q, n) [1] matrix from nodal values to values at the quadrature points
     quadrature_area      : (q) [m2] weight of each quadrature point
     quadrature_position  : (q, 2) [m] of the quadrature points
     """
 
-    basis: Basis
-    nodes: Array
+    finite_element_basis: Basis
+    node_positions: Array
     interpolation_matrix: sp.csr_matrix
     quadrature_area: Array
     quadrature_position: Array
@@ -68,12 +68,13 @@ class ContactInterface:
         return self.quadrature_position - self.centroid
 
     @classmethod
-    def from_mesh(cls, mesh: MeshQuad, element: Element | None = None) -> "ContactInterface":
+    def from_mesh(cls, contact_mesh: MeshQuad, plane_element: Element | None = None) -> "ContactInterface":
         """Basis and quadrature points on a plane mesh of the contact area.
 
-        element : restriction of the bodies' element to the contact plane; None: quadratic, of ElementHexS2
+        plane_element : restriction of the bodies' element to the contact plane; None: quadratic
+                        (ElementQuadS2), as of ElementHexS2
         """
-        basis = Basis(mesh, element or ElementQuadS2(), intorder=QUADRATURE_DEGREE)
+        basis = Basis(contact_mesh, plane_element or ElementQuadS2(), intorder=QUADRATURE_DEGREE)
         count, points = basis.dx.shape
         rows = np.arange(basis.dx.size).reshape(count, points)
         shape = [np.broadcast_to(np.asarray(basis.basis[i][0]), basis.dx.shape) for i in range(basis.Nbfun)]
@@ -126,7 +127,7 @@ class ContactModel:
         if self.fixed_unknowns is not None:
             return self.fixed_unknowns
         return tuple(
-            _select_supports(body, stop_all_motions=i == 0 and not self.is_mirrored)
+            _select_supports(body, stops_all_motions=i == 0 and not self.is_mirrored)
             for i, body in enumerate(self.bodies)
         )
 
@@ -140,7 +141,8 @@ class ContactModel:
     def _unloaded_energy(self) -> ContactEnergy:
         """Energy of bodies and contact as a function of the free unknowns, without loads."""
         blocks = [
-            body.stiffness[free][:, free] for body, free in zip(self.bodies, self._free_unknowns, strict=True)
+            body.stiffness_matrix[free][:, free]
+            for body, free in zip(self.bodies, self._free_unknowns, strict=True)
         ]
         traces = [
             trace[:, free] for trace, free in zip(self.approach_matrices(), self._free_unknowns, strict=True)
@@ -153,7 +155,7 @@ class ContactModel:
             pressure_law=self.pressure_law.derivatives,
         )
 
-    def solve(
+    def solve_equilibrium(
         self,
         nodal_loads: Sequence[Array],
         initial_pressure: float,
@@ -180,7 +182,7 @@ class ContactModel:
             [load[free] for load, free in zip(nodal_loads, self._free_unknowns, strict=True)]
         )
         energy = replace(self._unloaded_energy, load_vector=free_load)
-        minimum = energy.minimise(
+        minimum = energy.minimise_energy(
             offset - gap, None if initial_solution is None else initial_solution.energy_minimum
         )
         balance.check_contact_forces(
@@ -215,15 +217,15 @@ class ContactModel:
 class ContactSolution:
     """Equilibrium of two bodies in contact.
 
-    loads           : (n) [N] on each body
-    displacement    : (n) [m] of each body, three values per node
-    approach_offset : [m] approach at zero displacement where the gap is zero
-    energy_minimum  : minimum of the energy
+    nodal_loads         : (n) [N] on each body
+    nodal_displacements : (n) [m] of each body, three values per node
+    approach_offset     : [m] approach at zero displacement where the gap is zero
+    energy_minimum      : minimum of the energy
     """
 
-    model: ContactModel
-    loads: tuple[Array, ...]
-    displacement: tuple[Array, ...]
+    contact_model: ContactModel
+    nodal_loads: tuple[Array, ...]
+    nodal_displacements: tuple[Array, ...]
     approach_offset: float
     energy_minimum: EnergyMinimum
 
@@ -240,69 +242,75 @@ class ContactSolution:
     @property
     def pressure(self) -> Array:
         """Contact pressure (q) [Pa] at the quadrature points."""
-        return self.model.pressure_law.derivatives(self.approach, 1)[0]
+        return self.contact_model.pressure_law.derivatives(self.approach, 1)[0]
 
     @property
-    def stiffness(self) -> Array:
-        """Stiffness dp/d(approach) (q) [Pa/m] of the interface at the quadrature points."""
-        return self.model.pressure_law.derivatives(self.approach, 1)[1]
+    def contact_stiffness(self) -> Array:
+        """Normal stiffness per area (q) [Pa/m] of the interface at the q quadrature points."""
+        return self.contact_model.pressure_law.derivatives(self.approach, 1)[1]
 
     @cached_property
-    def node_approach(self) -> Array:
+    def nodal_approach(self) -> Array:
         """Approach (contact nodes) [m] at the nodes of the contact."""
-        nodes = self.model.contact_interface.nodes
-        pairs = zip(self.model.approach_matrices(), self.displacement, strict=True)
+        nodes = self.contact_model.contact_interface.node_positions
+        pairs = zip(self.contact_model.approach_matrices(), self.nodal_displacements, strict=True)
         elastic_approach = sum((trace @ u for trace, u in pairs), start=np.zeros(nodes.shape[1]))
-        return np.asarray(self.approach_offset - self.model.unloaded_gap(*nodes) + elastic_approach)
+        return np.asarray(self.approach_offset - self.contact_model.unloaded_gap(*nodes) + elastic_approach)
 
     @property
-    def node_pressure(self) -> Array:
+    def nodal_pressure(self) -> Array:
         """Pressure [Pa] at the nodes of the contact; some of them lie on its edges."""
-        return self.model.pressure_law.derivatives(self.node_approach, 1)[0]
+        return self.contact_model.pressure_law.derivatives(self.nodal_approach, 1)[0]
 
-    def pressure_at(self, positions: Array) -> Array:
-        """Pressure (k) [Pa] at positions (k, 2) [m] in the contact."""
-        approach = self.model.contact_interface.basis.interpolator(self.node_approach)(
-            np.asarray(positions).T
-        )
-        return self.model.pressure_law.derivatives(approach, 1)[0]
+    def pressure_at(self, contact_positions: Array) -> Array:
+        """Contact pressure [Pa] at k positions (k, 2) [m] in the contact."""
+        approach = self.contact_model.contact_interface.finite_element_basis.interpolator(
+            self.nodal_approach
+        )(np.asarray(contact_positions).T)
+        return self.contact_model.pressure_law.derivatives(approach, 1)[0]
 
 
 def displacement_matrix(
-    body: ElasticBody, contact_interface: ContactInterface, axis: int = 2
+    body: ElasticBody, contact_interface: ContactInterface, axis_index: int = 2
 ) -> sp.csr_matrix:
     """Matrix (q, n) [1]: displacement along an axis at the quadrature points per unknown of a body."""
     return (
-        contact_interface.interpolation_matrix @ nodal_displacement_matrix(body, contact_interface, axis)
+        contact_interface.interpolation_matrix
+        @ nodal_displacement_matrix(body, contact_interface, axis_index)
     ).tocsr()
 
 
 def nodal_displacement_matrix(
-    body: ElasticBody, contact_interface: ContactInterface, axis: int = 2
+    body: ElasticBody, contact_interface: ContactInterface, axis_index: int = 2
 ) -> sp.csr_matrix:
     """Matrix (contact nodes, n) [1]: displacement along an axis at the contact nodes per unknown of a body.
 
     Raises RuntimeError if a node of the contact is not a node of the body.
     """
-    contact_nodes = np.vstack([contact_interface.nodes, np.zeros((1, contact_interface.nodes.shape[1]))])
-    distance, node = cKDTree(body.nodes.T).query(contact_nodes.T)
+    contact_nodes = np.vstack(
+        [contact_interface.node_positions, np.zeros((1, contact_interface.node_positions.shape[1]))]
+    )
+    distance, node = cKDTree(body.node_positions.T).query(contact_nodes.T)
     if distance.max() > 1e-9:
-        raise RuntimeError(f"a node of the contact lies {distance.max():g} m away from the nodes of the body")
+        raise RuntimeError(
+            f"mesh: a contact node is {distance.max():g} m away from the nodes of the body; try another "
+            "--refinement"
+        )
     ones = np.ones(node.size)
     return sp.csr_matrix(
-        (ones, (np.arange(node.size), 3 * node + axis)), shape=(node.size, body.unknown_count)
+        (ones, (np.arange(node.size), 3 * node + axis_index)), shape=(node.size, body.unknown_count)
     )
 
 
-def _select_supports(body: ElasticBody, stop_all_motions: bool) -> IndexArray:
+def _select_supports(body: ElasticBody, stops_all_motions: bool) -> IndexArray:
     """Select three unknowns of a body that stop its rigid-body motions in the contact plane.
 
-    stop_all_motions : add three unknowns that stop the motion along z and the rotations about x and y.
+    stops_all_motions : add three unknowns that stop the motion along z and the rotations about x and y.
         Without these three, the body rests on the contact.
     """
-    x, y, z = body.nodes
+    x, y, z = body.node_positions
     first, second, third = (int(np.argmin(a * x + b * y + 1e-3 * z)) for a, b in ((1, 1), (-1, 1), (1, -1)))
     unknowns = [3 * first, 3 * first + 1, 3 * second + 1]
     return np.array(
-        unknowns + [3 * node + 2 for node in (first, second, third)] if stop_all_motions else unknowns
+        unknowns + [3 * node + 2 for node in (first, second, third)] if stops_all_motions else unknowns
     )

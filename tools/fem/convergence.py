@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from jointfmu.progress import track_progress
 from jointfmu.quantity import Array
 
-from ..inputs.fields.nodal_result import ContactField
+from ..inputs.fields.nodal_result import ContactPressureField
 from .bolted_contact import BoltedContact, JointSolution
 from .contact import PressureLaw
 from .geometry import Assembly
@@ -34,7 +34,8 @@ class MeshResult:
     refinement    : [1] divides all element sizes
     element_count : number of elements on the contact
     unknown_count : number of unknowns of all meshed bodies
-    result_values : {name in RESULT_UNITS: value}; `between` is nan if no two bolts are neighbours
+    result_values : {name in RESULT_UNITS: value}; `between`, the pressure midway between bolts, is nan if no
+                    two bolts are neighbours
     """
 
     refinement: float
@@ -71,7 +72,9 @@ def run_mesh_study(
     """
 
     def solve_mesh(refinement: float) -> JointSolution:
-        return BoltedContact.from_assembly(assembly, refinement).solve(pressure_law, preload, moment)
+        return BoltedContact.from_assembly(assembly, refinement).solve_equilibrium(
+            pressure_law, preload, moment
+        )
 
     *coarser, finest = refinement_levels
     rows = [
@@ -82,16 +85,19 @@ def run_mesh_study(
     return [*rows, summarize_solution(solution, finest)], solution
 
 
-def summarize_solution(solution: JointSolution, refinement: float) -> MeshResult:
+def summarize_solution(joint_solution: JointSolution, refinement: float) -> MeshResult:
     """Collect numbers of elements and unknowns, pressures and stiffnesses (RESULT_UNITS) of a solution."""
-    between = solution.pressure_between_bolts[1]
-    values = {"peak": solution.peak_pressure, "between": float(between.mean()) if between.size else math.nan}
-    joint = solution.bolted_contact
+    between = joint_solution.pressure_between_bolts[1]
+    values = {
+        "peak": joint_solution.peak_pressure,
+        "between": float(between.mean()) if between.size else math.nan,
+    }
+    joint = joint_solution.bolted_contact
     return MeshResult(
         refinement=refinement,
-        element_count=int(joint.contact_interface.basis.mesh.nelements),
+        element_count=int(joint.contact_interface.finite_element_basis.mesh.nelements),
         unknown_count=sum(body.unknown_count for body in joint.bodies),
-        result_values=values | solution.stiffness,
+        result_values=values | joint_solution.interface_stiffness,
     )
 
 
@@ -122,11 +128,11 @@ def observed_orders(mesh_results: Sequence[MeshResult]) -> dict[str, float]:
 MAX_PEAK_PRESSURE_DIFFERENCE = 0.1
 """Largest relative difference of the peak pressures around equivalent bolts [1] on a mesh that is fine
 enough."""
-_POSITION_TOLERANCE = 1e-6
+_BOLT_POSITION_TOLERANCE = 1e-6
 """Distance [m] below which a mirrored bolt coincides with another bolt."""
 
 
-def first_equivalent_bolts(bolt_positions: Array, has_moment: bool) -> NDArray[np.int64]:
+def find_first_equivalent_bolts(bolt_positions: Array, has_moment: bool) -> NDArray[np.int64]:
     """For each bolt, index (n) of the first bolt that is equivalent to it by mirror symmetry.
 
     Mirror planes are x = 0 and, without a moment about x, y = 0. The bodies are symmetric about both planes.
@@ -138,23 +144,28 @@ def first_equivalent_bolts(bolt_positions: Array, has_moment: bool) -> NDArray[n
     for mirror in ((-1.0, 1.0),) if has_moment else ((-1.0, 1.0), (1.0, -1.0)):
         distance = np.hypot(*(bolt_positions[:, None] * mirror - bolt_positions[None]).T).T
         image = distance.argmin(axis=1)
-        if np.all(distance[np.arange(len(bolt_positions)), image] < _POSITION_TOLERANCE):
+        if np.all(distance[np.arange(len(bolt_positions)), image] < _BOLT_POSITION_TOLERANCE):
             first = np.minimum(first, first[image])
     return first
 
 
-def check_bolt_symmetry(contact_field: ContactField, bolt_positions: Array, has_moment: bool) -> list[str]:
+def check_bolt_symmetry(
+    contact_field: ContactPressureField, bolt_positions: Array, has_moment: bool
+) -> list[str]:
     """List a warning if the peak pressures around equivalent bolts differ by over MAX_PEAK_DIFFERENCE.
 
     Returns a list of one message, or an empty list.
     """
     if not len(bolt_positions):
         return []
-    nearest_bolt = np.hypot(*(contact_field.position[:, None] - bolt_positions[None]).T).argmin(axis=0)
+    nearest_bolt = np.hypot(*(contact_field.node_positions[:, None] - bolt_positions[None]).T).argmin(axis=0)
     peak = np.array(
-        [np.max(contact_field.pressure[nearest_bolt == i], initial=0.0) for i in range(len(bolt_positions))]
+        [
+            np.max(contact_field.nodal_pressure[nearest_bolt == i], initial=0.0)
+            for i in range(len(bolt_positions))
+        ]
     )
-    group = first_equivalent_bolts(bolt_positions, has_moment)
+    group = find_first_equivalent_bolts(bolt_positions, has_moment)
     ratio = peak / np.array([np.min(peak[group == first]) for first in group]).clip(1e-9)
     worst = int(np.argmax(ratio))
     if not ratio[worst] > 1.0 + MAX_PEAK_PRESSURE_DIFFERENCE:

@@ -15,7 +15,7 @@ from skfem.models.elasticity import lame_parameters
 from jointfmu.quantity import Array
 
 
-class Cholesky:
+class CholeskyFactor:
     """Supernodal Cholesky factor of a sparse symmetric positive definite matrix.
 
     positive_definite_matrix : (n, n) scipy.sparse; only its lower triangle is read
@@ -29,7 +29,7 @@ class Cholesky:
         from cvxopt import cholmod
 
         cholmod.options["supernodal"] = 2
-        packed = _to_cvxopt(sp.tril(positive_definite_matrix))
+        packed = _convert_to_cvxopt(sp.tril(positive_definite_matrix))
         self._factor = cholmod.symbolic(packed)
         try:
             cholmod.numeric(packed, self._factor)
@@ -38,7 +38,7 @@ class Cholesky:
                 "a stiffness matrix is not positive definite: a body can move freely"
             ) from None
 
-    def solve(self, right_side: Array | sp.spmatrix) -> Array:
+    def solve_linear_system(self, right_side: Array | sp.spmatrix) -> Array:
         """Solve `matrix @ x = right_side` for x (n) or (n, k), with the factor of the matrix.
 
         Sparse right-hand sides take half the time of dense ones: CVXOPT solves four sparse columns at once,
@@ -53,7 +53,10 @@ class Cholesky:
                 for first in range(0, right_side.shape[1], MAX_SPARSE_RIGHT_SIDES)
             )
             return np.hstack(
-                [np.array(dense(cholmod.spsolve(self._factor, _to_cvxopt(block)))) for block in blocks]
+                [
+                    np.array(dense(cholmod.spsolve(self._factor, _convert_to_cvxopt(block))))
+                    for block in blocks
+                ]
             )
         x = dense(np.asfortranarray(right_side, dtype=np.float64))
         cholmod.solve(self._factor, x)
@@ -64,7 +67,7 @@ MAX_SPARSE_RIGHT_SIDES = 32
 """Largest number of sparse right-hand sides in one call: their solutions are in memory twice."""
 
 
-def _to_cvxopt(sparse_matrix: sp.spmatrix) -> Any:
+def _convert_to_cvxopt(sparse_matrix: sp.spmatrix) -> Any:
     """Convert a sparse matrix (n, k) of scipy to one of CVXOPT."""
     from cvxopt import matrix as dense
     from cvxopt import spmatrix
@@ -101,22 +104,22 @@ class ElasticBody:
     element: Element = field(default_factory=ElementHexS2)
 
     @cached_property
-    def basis(self) -> Basis:
+    def finite_element_basis(self) -> Basis:
         """Scalar finite-element basis. The displacement component k at node i is unknown 3 i + k."""
         return Basis(self.mesh, self.element, intorder=QUADRATURE_DEGREE)
 
     @property
     def unknown_count(self) -> int:
         """Number of unknowns (three per node)."""
-        return 3 * int(self.basis.N)
+        return 3 * int(self.finite_element_basis.N)
 
     @property
-    def nodes(self) -> Array:
+    def node_positions(self) -> Array:
         """Positions (3, n) [m] of the nodes."""
-        return np.asarray(self.basis.doflocs)
+        return np.asarray(self.finite_element_basis.doflocs)
 
     @cached_property
-    def stiffness(self) -> sp.csr_matrix:
+    def stiffness_matrix(self) -> sp.csr_matrix:
         """Stiffness matrix (n, n) [N/m] of the unsupported body.
 
         The integrals are those of skfem.models.elasticity.linear_elasticity. One matrix product gives all
@@ -125,7 +128,7 @@ class ElasticBody:
         lame, shear = lame_parameters(self.E, self.nu)
         count = self.mesh.nelements
         return _assemble_global_matrix(
-            self.basis,
+            self.finite_element_basis,
             [
                 self._element_matrices(slice(i, i + ELEMENTS_PER_BLOCK), lame, shear)
                 for i in range(0, count, ELEMENTS_PER_BLOCK)
@@ -134,13 +137,13 @@ class ElasticBody:
 
     def _element_matrices(self, element_slice: slice, lame_lambda: float, shear_modulus: float) -> Array:
         """Stiffness matrices (m, 20, 20, 3, 3) [N/m] of the selected elements."""
-        functions = range(self.basis.Nbfun)
-        gradient = np.stack([self.basis.basis[i][0].grad[:, element_slice] for i in functions])
+        functions = range(self.finite_element_basis.Nbfun)
+        gradient = np.stack([self.finite_element_basis.basis[i][0].grad[:, element_slice] for i in functions])
         n, _, m, _ = gradient.shape
         rows = np.ascontiguousarray(gradient.transpose(2, 0, 1, 3)).reshape(m, 3 * n, -1)
-        product = ((rows * self.basis.dx[element_slice, None, :]) @ rows.transpose(0, 2, 1)).reshape(
-            m, n, 3, n, 3
-        )
+        product = (
+            (rows * self.finite_element_basis.dx[element_slice, None, :]) @ rows.transpose(0, 2, 1)
+        ).reshape(m, n, 3, n, 3)
         product = product.transpose(0, 1, 3, 2, 4)
         matrix = lame_lambda * product + shear_modulus * product.transpose(0, 1, 2, 4, 3)
         trace = shear_modulus * np.trace(product, axis1=3, axis2=4)
@@ -149,34 +152,38 @@ class ElasticBody:
         return np.asarray(matrix)
 
     @cached_property
-    def mass(self) -> sp.csr_matrix:
+    def mass_matrix(self) -> sp.csr_matrix:
         """Consistent mass matrix (n, n) [kg]."""
         functions = np.stack(
             [
-                np.broadcast_to(np.asarray(self.basis.basis[i][0]), self.basis.dx.shape)
-                for i in range(self.basis.Nbfun)
+                np.broadcast_to(
+                    np.asarray(self.finite_element_basis.basis[i][0]), self.finite_element_basis.dx.shape
+                )
+                for i in range(self.finite_element_basis.Nbfun)
             ]
         )
         rows = functions.transpose(1, 0, 2)
-        scalar = self.density * (rows * self.basis.dx[:, None, :]) @ rows.transpose(0, 2, 1)
+        scalar = self.density * (rows * self.finite_element_basis.dx[:, None, :]) @ rows.transpose(0, 2, 1)
         return sp.kron(
-            _assemble_global_matrix(self.basis, [scalar[..., None, None]]), np.eye(3), format="csr"
+            _assemble_global_matrix(self.finite_element_basis, [scalar[..., None, None]]),
+            np.eye(3),
+            format="csr",
         )
 
-    def uniform_load(self, facets: IndexArray) -> Array:
+    def distribute_unit_force(self, loaded_facets: IndexArray) -> Array:
         """Nodal load (n) [N/N] of a unit force along z, distributed uniformly over facets."""
-        basis = FacetBasis(self.mesh, self.element, facets=facets, intorder=QUADRATURE_DEGREE)
+        basis = FacetBasis(self.mesh, self.element, facets=loaded_facets, intorder=QUADRATURE_DEGREE)
         share = LinearForm(lambda v, w: v).assemble(basis)
         load = np.zeros(self.unknown_count)
         load[2::3] = share / share.sum()
         return load
 
-    def rigid_motions(self, rotation_centre: tuple[float, float] = (0.0, 0.0)) -> Array:
+    def rigid_body_motions(self, rotation_centre: tuple[float, float] = (0.0, 0.0)) -> Array:
         """Displacements (n, 6) of unit translations [m/m] along, and unit rotations [m/rad] about, x, y, z.
 
         rotation_centre : (x, y) [m] of the centre of rotation, which lies in the plane z = 0
         """
-        x, y, z = self.nodes - np.array([[*rotation_centre, 0.0]]).T
+        x, y, z = self.node_positions - np.array([[*rotation_centre, 0.0]]).T
         unit, zero = np.ones_like(x), np.zeros_like(x)
         motions = [
             (unit, zero, zero),

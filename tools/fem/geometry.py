@@ -41,7 +41,7 @@ class BoltGrid:
                 )
 
     @property
-    def positions(self) -> Array:
+    def bolt_positions(self) -> Array:
         """Bolt positions (n, 2) [m], row by row."""
         rows, columns = int(self.rows), int(self.columns)
         y = 0.5 * self.row_spacing * _equidistant_coordinates(rows)
@@ -67,7 +67,7 @@ class BoltList:
             raise ValueError(f"y has {len(self.y)} values, x has {len(self.x)}; expected one for each bolt")
 
     @property
-    def positions(self) -> Array:
+    def bolt_positions(self) -> Array:
         """Bolt positions (n, 2) [m]."""
         return np.stack([self.x, self.y], axis=1).astype(np.float64)
 
@@ -76,9 +76,9 @@ BoltArrangement = BoltGrid | BoltList
 """Positions of bolts: a grid or a list."""
 
 
-def _equidistant_coordinates(count: int) -> Array:
-    """Equidistant coordinates from -1 to 1, as many as `count`; for one, the coordinate 0."""
-    return np.linspace(-1.0, 1.0, count) if count > 1 else np.zeros(1)
+def _equidistant_coordinates(coordinate_count: int) -> Array:
+    """Equidistant coordinates from -1 to 1, as many as `coordinate_count`; for one, the coordinate 0."""
+    return np.linspace(-1.0, 1.0, coordinate_count) if coordinate_count > 1 else np.zeros(1)
 
 
 LENGTH_TOLERANCE = 1e-9
@@ -101,7 +101,7 @@ class Layer:
     opening_half_lengths: tuple[float, float] = (0.0, 0.0)
     has_bolt_holes: bool = False
 
-    def is_solid(self, x: Array, y: Array) -> NDArray[np.bool_]:
+    def is_in_material(self, x: Array, y: Array) -> NDArray[np.bool_]:
         """Whether points (...) [m] of the plan view lie in the material of the layer; ignores bolt holes."""
         inside = (np.abs(x) < self.outline_half_lengths[0]) & (np.abs(y) < self.outline_half_lengths[1])
         return np.asarray(
@@ -141,7 +141,8 @@ class TappedPlate(Plate):
         check_fields(self)
         if not self.depth < self.thickness:
             raise ValueError(
-                f"thickness = {self.thickness:g} m is outside ({self.depth:g}, inf): deeper than its threads"
+                f"thickness = {self.thickness:g} m: the tapped plate must be thicker than its thread depth, "
+                f"{self.depth:g} m; increase thickness or reduce depth"
             )
 
     def layers(self) -> tuple[Layer, ...]:
@@ -196,9 +197,9 @@ class BoxSection:
         walls = Layer(base, end, outside, inside)
         return (flange, walls, Layer(end, self.height, outside)) if self.floor else (flange, walls)
 
-    def _half_lengths(self, inset: float) -> tuple[float, float]:
+    def _half_lengths(self, edge_inset: float) -> tuple[float, float]:
         """Half lengths (2) [m] of a rectangle with this inset from the edge of the flange."""
-        return 0.5 * self.length - inset, 0.5 * self.width - inset
+        return 0.5 * self.length - edge_inset, 0.5 * self.width - edge_inset
 
 
 BodyGeometry = Plate | TappedPlate | BoxSection
@@ -215,19 +216,19 @@ class Assembly:
     bolts: BoltArrangement
 
     def __post_init__(self) -> None:
-        check_bolts(self)
+        check_bolt_heads(self)
 
     @property
     def row_distance(self) -> float:
         """Distance L_a [m] of the two outermost rows of bolts, which carry a moment about x."""
-        return float(np.ptp(self.bolts.positions[:, 1]))
+        return float(np.ptp(self.bolts.bolt_positions[:, 1]))
 
-    def outer_rows(self) -> tuple[NDArray[np.bool_], NDArray[np.bool_]] | None:
+    def find_outer_rows(self) -> tuple[NDArray[np.bool_], NDArray[np.bool_]] | None:
         """Masks (n) of the bolts in the outermost row at y > 0 and in the opposite row.
 
         None if there is only one row, or if the two rows have different numbers of bolts.
         """
-        y, size = self.bolts.positions[:, 1], self.row_distance
+        y, size = self.bolts.bolt_positions[:, 1], self.row_distance
         high, low = (np.abs(y - end) < LENGTH_TOLERANCE + 1e-6 * size for end in (y.max(), y.min()))
         return (high, low) if size > 0.0 and high.sum() == low.sum() else None
 
@@ -238,7 +239,7 @@ class Assembly:
         outer = np.min([layer.outline_half_lengths for layer in layers], axis=0)
         inner1, inner2 = (np.minimum(layer.opening_half_lengths, outer) for layer in layers)
         opening = 4.0 * (inner1.prod() + inner2.prod() - np.minimum(inner1, inner2).prod())
-        holes = len(self.bolts.positions) * 0.25 * np.pi * self.bolts.hole_diameter**2
+        holes = len(self.bolts.bolt_positions) * 0.25 * np.pi * self.bolts.hole_diameter**2
         return float(4.0 * outer.prod() - opening - holes)
 
     def bolt_forces(self, preload: float, moment: float = 0.0) -> Array:
@@ -252,12 +253,15 @@ class Assembly:
         """
         if not (np.isfinite(preload) and preload > 0.0):
             raise ValueError(f"preload = {preload:g} N is outside (0, inf): force of each bolt")
-        force = np.full(len(self.bolts.positions), float(preload))
+        force = np.full(len(self.bolts.bolt_positions), float(preload))
         if moment == 0.0:
             return force
-        rows, limit = self.outer_rows(), self.max_moment(preload)
+        rows, limit = self.find_outer_rows(), self.max_moment(preload)
         if rows is None:
-            raise ValueError(f"moment = {moment:g} N.m needs two outer rows with as many bolts each")
+            raise ValueError(
+                f"moment = {moment:g} N.m needs two outer rows of bolts with equal numbers of bolts; "
+                "expected 0 N.m here"
+            )
         if not abs(moment) < limit:
             reason = "a row of bolts would lose its force"
             raise ValueError(f"moment = {moment:g} N.m is outside ({-limit:g}, {limit:g}): {reason}")
@@ -267,14 +271,14 @@ class Assembly:
 
     def max_moment(self, preload: float) -> float:
         """Moment [N.m] at which an outer row of bolts loses its force; 0 without two matching rows."""
-        rows = self.outer_rows()
+        rows = self.find_outer_rows()
         return 0.0 if rows is None else preload * self.row_distance * float(rows[0].sum())
 
 
-def check_bolts(assembly: Assembly) -> None:
+def check_bolt_heads(assembly: Assembly) -> None:
     """Raise ValueError if a bolt head does not lie flat on its body, or if two heads overlap."""
     bolts = assembly.bolts
-    hole, head, positions = 0.5 * bolts.hole_diameter, 0.5 * bolts.head_diameter, bolts.positions
+    hole, head, positions = 0.5 * bolts.hole_diameter, 0.5 * bolts.head_diameter, bolts.bolt_positions
     if hole >= head:
         raise ValueError(
             f"hole_diameter = {2 * hole:g} m is outside (0, {2 * head:g}): the hole must be smaller than the "
@@ -282,7 +286,7 @@ def check_bolts(assembly: Assembly) -> None:
         )
     for i, (x, y) in enumerate(positions):
         for side in ("side1", "side2"):
-            if text := _find_obstacle(getattr(assembly, side), x, y, head):
+            if text := _find_bolt_head_obstacle(getattr(assembly, side), x, y, head):
                 raise ValueError(
                     f"bolt {i + 1} at ({1e3 * x:.4g}, {1e3 * y:.4g}) mm with a head of {2e3 * head:.4g} mm "
                     f"{text} of {side}"
@@ -307,7 +311,9 @@ def check_thickness(assembly: Assembly) -> None:
             )
 
 
-def _find_obstacle(body: BodyGeometry, bolt_x: float, bolt_y: float, head_radius: float) -> str | None:
+def _find_bolt_head_obstacle(
+    body: BodyGeometry, bolt_x: float, bolt_y: float, head_radius: float
+) -> str | None:
     """Reason why a bolt head (a disc) does not lie flat on a body; None if it does."""
     flange, *rest = body.layers()
     if isinstance(body, TappedPlate):
@@ -325,18 +331,24 @@ def _find_obstacle(body: BodyGeometry, bolt_x: float, bolt_y: float, head_radius
     return None
 
 
-def _contains_disc(x: float, y: float, radius: float, half_lengths: tuple[float, float]) -> bool:
+def _contains_disc(
+    disc_x: float, disc_y: float, disc_radius: float, rectangle_half_lengths: tuple[float, float]
+) -> bool:
     """Whether a disc lies inside a rectangle of these half lengths [m]; touching counts as inside."""
     return (
-        abs(x) + radius <= half_lengths[0] + LENGTH_TOLERANCE
-        and abs(y) + radius <= half_lengths[1] + LENGTH_TOLERANCE
+        abs(disc_x) + disc_radius <= rectangle_half_lengths[0] + LENGTH_TOLERANCE
+        and abs(disc_y) + disc_radius <= rectangle_half_lengths[1] + LENGTH_TOLERANCE
     )
 
 
-def _overlaps_disc(x: float, y: float, radius: float, half_lengths: tuple[float, float]) -> bool:
+def _overlaps_disc(
+    disc_x: float, disc_y: float, disc_radius: float, rectangle_half_lengths: tuple[float, float]
+) -> bool:
     """Whether a disc overlaps the interior of a rectangle of these half lengths [m]."""
-    gap = np.hypot(max(abs(x) - half_lengths[0], 0.0), max(abs(y) - half_lengths[1], 0.0))
-    return min(half_lengths) > 0.0 and bool(gap < radius - LENGTH_TOLERANCE)
+    gap = np.hypot(
+        max(abs(disc_x) - rectangle_half_lengths[0], 0.0), max(abs(disc_y) - rectangle_half_lengths[1], 0.0)
+    )
+    return min(rectangle_half_lengths) > 0.0 and bool(gap < disc_radius - LENGTH_TOLERANCE)
 
 
 def layer_rectangles(assembly: Assembly) -> Iterator[tuple[float, float]]:

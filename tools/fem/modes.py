@@ -16,12 +16,12 @@ from jointfmu.quantity import Array
 from ..inputs.fields.bolted_interface import BoltedInterface
 from .bolted_contact import BoltedContact, JointSolution
 from .contact import ContactInterface, PressureLaw, displacement_matrix
-from .elasticity import Cholesky, ElasticBody
+from .elasticity import CholeskyFactor, ElasticBody
 from .geometry import Assembly
 
 RIGID_MODE_COUNT = 6
 """Number of rigid-body modes of a free assembly [1]."""
-SHIFT_FREQUENCY = 100.0
+EIGENVALUE_SHIFT_FREQUENCY = 100.0
 """Frequency f [Hz] of the shift -(2 pi f)^2 of the eigensolver; far below the elastic modes."""
 EIGENSOLVER_TOLERANCE = 1e-8
 """Relative tolerance of the eigensolver for mode shapes [1]; the error of frequencies is its square."""
@@ -33,12 +33,12 @@ MIN_ELASTIC_FREQUENCY = 1.0
 class NaturalModes:
     """Elastic natural modes of an assembly, in order of increasing frequency.
 
-    frequency     : (k) [Hz]
-    mode_shapes   : for each mode, displacement (n, 3) [1] of the nodes of each body, of modal mass 1 kg
-    assembly_mass : mass of the assembly [kg]
+    natural_frequencies : (k) [Hz]
+    mode_shapes         : for each mode, displacement (n, 3) [1] of the nodes of each body, of modal mass 1 kg
+    assembly_mass       : mass of the assembly [kg]
     """
 
-    frequency: Array
+    natural_frequencies: Array
     mode_shapes: tuple[tuple[Array, ...], ...]
     assembly_mass: float
 
@@ -81,9 +81,9 @@ def compute_modes(
     if frequency[RIGID_MODE_COUNT] < MIN_ELASTIC_FREQUENCY:
         raise RuntimeError(
             f"the contact leaves more than {RIGID_MODE_COUNT} rigid motions: the contact does not hold the "
-            "bodies together"
+            "bodies together; increase the preload"
         )
-    mass = sum(float(body.mass.sum()) / 3.0 for body in bodies) * (3 - len(bodies))
+    mass = sum(float(body.mass_matrix.sum()) / 3.0 for body in bodies) * (3 - len(bodies))
     end = RIGID_MODE_COUNT + mode_count
     return NaturalModes(
         frequency[RIGID_MODE_COUNT:end], tuple(motion[1] for motion in motions[RIGID_MODE_COUNT:end]), mass
@@ -119,11 +119,11 @@ def _solve_lowest_modes(
 
     The shift makes the matrix positive definite in spite of the rigid-body modes.
     """
-    mass = sp.block_diag([body.mass for body in bodies], format="csr")
-    stiffness = sp.block_diag([body.stiffness for body in bodies], format="csr") + interface_stiffness
-    shift = -((2.0 * np.pi * SHIFT_FREQUENCY) ** 2)
-    factor = Cholesky(stiffness - shift * mass)
-    inverse = LinearOperator(stiffness.shape, matvec=factor.solve, dtype=np.float64)
+    mass = sp.block_diag([body.mass_matrix for body in bodies], format="csr")
+    stiffness = sp.block_diag([body.stiffness_matrix for body in bodies], format="csr") + interface_stiffness
+    shift = -((2.0 * np.pi * EIGENVALUE_SHIFT_FREQUENCY) ** 2)
+    factor = CholeskyFactor(stiffness - shift * mass)
+    inverse = LinearOperator(stiffness.shape, matvec=factor.solve_linear_system, dtype=np.float64)
     start = np.random.default_rng(1).standard_normal(stiffness.shape[0])
     squares, shapes = eigsh(
         stiffness, k=mode_count, M=mass, sigma=shift, OPinv=inverse, v0=start, tol=EIGENSOLVER_TOLERANCE
@@ -142,25 +142,28 @@ def _mirror_mode_shape(side2_shape: Array, mirror_sign: float) -> tuple[Array, A
     return mirror_sign * side2 * np.array([1.0, 1.0, -1.0]), side2
 
 
-DEFAULT_REFINEMENT = 0.5
+DEFAULT_MESH_REFINEMENT = 0.5
 """Refinement [1] of the meshes for frequencies in many load states. Twice this refinement lowers the
 frequencies of the box specimen by less than 1 % (docs/finite_elements_explanation.md)."""
 
 
-def preloaded_modes(
-    solution: JointSolution, tangential_stiffness_ratio: float, mode_count: int = 6
+def compute_preloaded_modes(
+    joint_solution: JointSolution, tangential_stiffness_ratio: float, mode_count: int = 6
 ) -> NaturalModes:
     """Natural modes of a preloaded joint: the contact stiffness at each point follows from its pressure.
 
     tangential_stiffness_ratio : [1] tangential over normal stiffness of the interface
-    mode_count : number of modes
+    mode_count                 : number of modes
     """
     return _compute_modes_for_stiffness(
-        solution.bolted_contact, solution.contact_solution.stiffness, tangential_stiffness_ratio, mode_count
+        joint_solution.bolted_contact,
+        joint_solution.contact_solution.contact_stiffness,
+        tangential_stiffness_ratio,
+        mode_count,
     )
 
 
-def uniform_pressure_modes(
+def compute_uniform_pressure_modes(
     bolted_contact: BoltedContact,
     pressure_law: PressureLaw,
     total_bolt_force: float,
@@ -170,7 +173,7 @@ def uniform_pressure_modes(
     """Natural modes for a uniform contact pressure: the total bolt force [N] over the contact area.
 
     tangential_stiffness_ratio : [1] tangential over normal stiffness of the interface
-    mode_count : number of modes
+    mode_count                 : number of modes
     """
     area = bolted_contact.contact_interface.quadrature_area
     approach = pressure_law.inverse(np.asarray(total_bolt_force / area.sum()))
@@ -182,34 +185,36 @@ def uniform_pressure_modes(
 
 def compute_frequencies(
     assembly: Assembly,
-    joint: BoltedInterface,
+    joint_parameters: BoltedInterface,
     tangential_stiffness_ratio: float,
     load_states: Sequence[tuple[float, float]],
-    refinement: float = DEFAULT_REFINEMENT,
+    refinement: float = DEFAULT_MESH_REFINEMENT,
     mode_count: int = 6,
     is_pressure_uniform: bool = False,
 ) -> Array:
     """Compute the natural frequencies (load states, modes) [Hz] of an assembly in several load states.
 
-    joint : gives the interface law; its contact area is replaced by the area of the assembly
+    joint_parameters : gives the interface law; its contact area is replaced by the area of the assembly
     tangential_stiffness_ratio : [1] tangential over normal stiffness of the interface
     load_states : preload [N] per bolt and moment [N.m] about x of each load state
     is_pressure_uniform : distribute the bolt force uniformly over the contact, and compute no pressure
     """
-    law = tabulate_approach(replace(joint, A_0=assembly.contact_area))
+    law = tabulate_approach(replace(joint_parameters, A_0=assembly.contact_area))
     contact = BoltedContact.from_assembly(assembly, refinement)
     rows = []
     for preload, moment in load_states:
         if is_pressure_uniform:
             force = float(assembly.bolt_forces(preload, moment).sum())
             rows.append(
-                uniform_pressure_modes(contact, law, force, tangential_stiffness_ratio, mode_count).frequency
+                compute_uniform_pressure_modes(
+                    contact, law, force, tangential_stiffness_ratio, mode_count
+                ).natural_frequencies
             )
         else:
             rows.append(
-                preloaded_modes(
-                    contact.solve(law, preload, moment), tangential_stiffness_ratio, mode_count
-                ).frequency
+                compute_preloaded_modes(
+                    contact.solve_equilibrium(law, preload, moment), tangential_stiffness_ratio, mode_count
+                ).natural_frequencies
             )
     return np.array(rows)
 

@@ -11,7 +11,7 @@ from scipy.sparse.linalg import LinearOperator, cg
 from jointfmu.progress import track_progress
 from jointfmu.quantity import Array
 
-from .elasticity import Cholesky
+from .elasticity import CholeskyFactor
 
 RELATIVE_TOLERANCE = 1e-11
 """Residual force over applied load [1], both as sums of magnitudes, at which Newton's method converges."""
@@ -36,7 +36,7 @@ class EnergyMinimum:
     displacement: Array
     approach: Array
     newton_steps: int
-    tangent_factor: Cholesky | None
+    tangent_factor: CholeskyFactor | None
 
 
 @dataclass(frozen=True)
@@ -60,11 +60,14 @@ class ContactEnergy:
     quadrature_area: Array
     pressure_law: Callable[[Array], list[Array]]
 
-    def minimise(self, approach_offset: Array, initial_minimum: EnergyMinimum | None = None) -> EnergyMinimum:
+    def minimise_energy(
+        self, approach_offset: Array, initial_minimum: EnergyMinimum | None = None
+    ) -> EnergyMinimum:
         """Find the minimum of the energy by Newton's method.
 
         approach_offset : (q) [m] approach at zero displacement
-        initial_minimum : minimum of the same energy under another load, to start from; None: start at u = 0
+        initial_minimum : minimum of the same energy under another load, to start from; None: start at zero
+                      displacement
 
         The tangent is factorised in the first step. Later steps use conjugate gradients with this factor as
         preconditioner. If they need more than MAX_CG_ITERATIONS, the tangent is factorised anew.
@@ -89,7 +92,7 @@ class ContactEnergy:
             last_residual = size
             spring = self.quadrature_area * k
             if factor is None or slow:
-                factor = Cholesky(K + T.T @ sp.diags_array(spring) @ T)
+                factor = CholeskyFactor(K + T.T @ sp.diags_array(spring) @ T)
             accuracy = min(1e-2, max(size, MIN_LINEAR_OVER_NEWTON_TOLERANCE * RELATIVE_TOLERANCE / size))
             tangent = LinearOperator(K.shape, partial(self._apply_tangent, spring), dtype=np.float64)
             move, count = _solve_cg(tangent, residual, factor, accuracy)
@@ -105,7 +108,11 @@ class ContactEnergy:
         )
 
     def _apply_tangent(self, contact_stiffness: Array, displacement: Array) -> Array:
-        """Multiply the tangent by u: (K + T^T diag(k) T) u, with the contact stiffness k (q) [N/m]."""
+        """Multiply the tangent stiffness of bodies and contact by a vector u: (K + T^T diag(k) T) u.
+
+        K (n, n) stiffness of the bodies [N/m], T (q, n) approach per displacement [1], k (q) contact
+        stiffness [N/m].
+        """
         return np.asarray(
             self.stiffness_matrix @ displacement
             + self.approach_matrix.T @ (contact_stiffness * (self.approach_matrix @ displacement))
@@ -118,10 +125,10 @@ class ContactEnergy:
 
         A full step is taken if its final slope is at most a tenth of the initial one.
 
-        approach : (q) [m], at the start of the step
-        approach_change : (q) [m] of the approach by the full step
+        approach                  : (q) [m], at the start of the step
+        approach_change           : (q) [m] of the approach by the full step
         initial_slope, slope_rate : [J] of elastic energy minus work of the loads: its slope at the step
-            length s is initial_slope + s slope_rate
+                                    length s is initial_slope + s slope_rate
         """
 
         def energy_slope(step_length: float) -> float:
@@ -140,7 +147,10 @@ class ContactEnergy:
 
 
 def _solve_cg(
-    matrix: LinearOperator, right_side: Array, preconditioner: Cholesky, relative_tolerance: float
+    system_matrix: LinearOperator,
+    right_side: Array,
+    preconditioner: CholeskyFactor,
+    relative_tolerance: float,
 ) -> tuple[Array, int]:
     """Solve a linear system by preconditioned conjugate gradients to a relative tolerance.
 
@@ -153,9 +163,9 @@ def _solve_cg(
         nonlocal count
         count += 1
 
-    inverse = LinearOperator(matrix.shape, matvec=preconditioner.solve, dtype=np.float64)
+    inverse = LinearOperator(system_matrix.shape, matvec=preconditioner.solve_linear_system, dtype=np.float64)
     solution, _ = cg(
-        matrix,
+        system_matrix,
         right_side,
         rtol=relative_tolerance,
         atol=0.0,

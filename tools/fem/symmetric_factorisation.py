@@ -13,13 +13,13 @@ from scipy.spatial import cKDTree
 
 from jointfmu.quantity import Array
 
-from .elasticity import Cholesky, ElasticBody, IndexArray
+from .elasticity import CholeskyFactor, ElasticBody, IndexArray
 from .geometry import LENGTH_TOLERANCE
 
 REFLECTED_AXES = ((0,), (1,), (2,), (0, 2))
 """Axes of the reflections that bodies may have. The last one is half a turn about y: it maps a joint between
 opposite edges to itself, with the sides exchanged."""
-MAX_ASYMMETRY = 1e-9
+MAX_RELATIVE_MATRIX_ASYMMETRY = 1e-9
 """Largest asymmetry of a symmetric stiffness matrix over its largest product with a displacement [1]."""
 ROUND_OFF_OVER_LARGEST_LOAD = 1e-14
 """Part of a load over the largest load [1] below which the part is round-off."""
@@ -28,20 +28,23 @@ ROUND_OFF_OVER_LARGEST_LOAD = 1e-14
 class SymmetricFactorisation:
     """Factorisation of a symmetric positive definite matrix (n, n) that reflections do not change.
 
-    reflections : matrices (n, n) [1], see `find_reflections`; none: the complete matrix is factorised
+    reflections : signed permutation matrices (n, n) [1]; none: the complete matrix is factorised
     """
 
-    def __init__(self, matrix: sp.csr_matrix, reflections: Sequence[sp.csr_matrix]) -> None:
+    def __init__(self, stiffness_matrix: sp.csr_matrix, reflections: Sequence[sp.csr_matrix]) -> None:
         bases = [
-            _symmetry_basis(matrix.shape[0], class_) for class_ in _combine_reflection_signs(reflections)
+            _symmetry_basis(stiffness_matrix.shape[0], class_)
+            for class_ in _combine_reflection_signs(reflections)
         ]
         # the product of the matrix and a class is in the class: one row of each image is enough
-        self._factors = [Cholesky(_representative_rows(basis) @ matrix @ basis) for basis in bases]
+        self._factors = [
+            CholeskyFactor(_representative_rows(basis) @ stiffness_matrix @ basis) for basis in bases
+        ]
         self._ends = np.cumsum([basis.shape[1] for basis in bases])[:-1]
         self._transform = sp.hstack(bases, format="csr")
         self._transposed = self._transform.T.tocsr()
 
-    def solve(self, right_side: Array | sp.csc_matrix) -> Array:
+    def solve_linear_system(self, right_side: Array | sp.csc_matrix) -> Array:
         """Solve `matrix @ x = right_side` for x (n, k)."""
         loads = self._transposed @ right_side
         coordinates = np.zeros(loads.shape)
@@ -52,49 +55,49 @@ class SymmetricFactorisation:
             # most loads of a symmetric joint are of one class: in the others, they are round-off
             loaded = _largest_in_columns(part) > ROUND_OFF_OVER_LARGEST_LOAD * largest
             if np.any(loaded):
-                coordinates[start:end, loaded] = factor.solve(part[:, loaded])
+                coordinates[start:end, loaded] = factor.solve_linear_system(part[:, loaded])
         return np.asarray(self._transform @ coordinates)
 
 
 def find_reflections(
-    matrix: sp.csr_matrix, bodies: Sequence[ElasticBody], unknowns: IndexArray
+    stiffness_matrix: sp.csr_matrix, bodies: Sequence[ElasticBody], matrix_unknowns: IndexArray
 ) -> list[sp.csr_matrix]:
     """Reflections of the nodes of bodies that do not change a stiffness matrix.
 
     A reflection in z exchanges two bodies. Returns independent signed permutation matrices (n, n) of the n
     unknowns of the matrix.
 
-    unknowns : (n) indices of the unknowns of the matrix among all unknowns of the bodies
+    matrix_unknowns : (n) indices of the unknowns of the matrix among all unknowns of the bodies
     """
-    position = np.concatenate([body.nodes.T for body in bodies])
+    position = np.concatenate([body.node_positions.T for body in bodies])
     # bodies share positions on the contact: a fourth coordinate separates them
-    side = np.repeat(np.linspace(-1.0, 1.0, len(bodies)), [body.nodes.shape[1] for body in bodies])
+    side = np.repeat(np.linspace(-1.0, 1.0, len(bodies)), [body.node_positions.shape[1] for body in bodies])
     position = np.column_stack([position, np.ptp(position) * side])
     tree = cKDTree(position)
     number = np.full(3 * len(position), -1)
-    number[unknowns] = np.arange(unknowns.size)
-    displacement = np.random.default_rng(1).standard_normal(unknowns.size)
-    force = matrix @ displacement
+    number[matrix_unknowns] = np.arange(matrix_unknowns.size)
+    displacement = np.random.default_rng(1).standard_normal(matrix_unknowns.size)
+    force = stiffness_matrix @ displacement
     found: list[sp.csr_matrix] = []
     reflected: set[int] = set()
     for axes in REFLECTED_AXES:
         sign = np.where(np.isin([0, 1, 2, 2], axes), -1.0, 1.0)
         distance, image_node = tree.query(position * sign)
-        image = number[(3 * image_node[:, None] + np.arange(3)).ravel()[unknowns]]
+        image = number[(3 * image_node[:, None] + np.arange(3)).ravel()[matrix_unknowns]]
         if reflected.issuperset(axes) or distance.max() > LENGTH_TOLERANCE or image.min() < 0:
             continue
-        signs = sign[unknowns % 3]
-        reflection = sp.csr_matrix((signs, (np.arange(image.size), image)), shape=matrix.shape)
-        change = reflection @ force - matrix @ (reflection @ displacement)
-        if np.abs(change).max() < MAX_ASYMMETRY * np.abs(force).max():
+        signs = sign[matrix_unknowns % 3]
+        reflection = sp.csr_matrix((signs, (np.arange(image.size), image)), shape=stiffness_matrix.shape)
+        change = reflection @ force - stiffness_matrix @ (reflection @ displacement)
+        if np.abs(change).max() < MAX_RELATIVE_MATRIX_ASYMMETRY * np.abs(force).max():
             found.append(reflection)
             reflected.update(axes)
     return found
 
 
-def _largest_in_columns(matrix: Array | sp.spmatrix) -> Array:
+def _largest_in_columns(stiffness_matrix: Array | sp.spmatrix) -> Array:
     """Largest absolute value (k) in each column of a matrix (n, k)."""
-    largest = abs(matrix).max(axis=0)
+    largest = abs(stiffness_matrix).max(axis=0)
     return largest.toarray().ravel() if sp.issparse(largest) else largest
 
 
@@ -119,11 +122,14 @@ def _symmetry_basis(unknown_count: int, signed_reflections: Sequence[sp.csr_matr
     return (columns @ sp.diags(1.0 / np.asarray(norm).ravel())).tocsc()
 
 
-def _representative_rows(basis: sp.csc_matrix) -> sp.csr_matrix:
+def _representative_rows(symmetry_basis: sp.csc_matrix) -> sp.csr_matrix:
     """Matrix (m, n) [1] that maps a displacement in the span of a basis (n, m) to its coordinates.
 
     Each coordinate is read from one row: the first one in the column of the basis.
     """
-    first = basis.indptr[:-1]
-    entries = 1.0 / basis.data[first], (np.arange(basis.shape[1]), basis.indices[first])
-    return sp.csr_matrix(entries, shape=basis.shape[::-1])
+    first = symmetry_basis.indptr[:-1]
+    entries = (
+        1.0 / symmetry_basis.data[first],
+        (np.arange(symmetry_basis.shape[1]), symmetry_basis.indices[first]),
+    )
+    return sp.csr_matrix(entries, shape=symmetry_basis.shape[::-1])

@@ -20,11 +20,11 @@ from .bolted_contact import compute_bolt_head_loads, make_elastic_body
 from .contact import ContactInterface, displacement_matrix
 from .elasticity import ElasticBody, IndexArray
 from .geometry import Assembly
-from .mesh import contact_mesh, find_contact_cells
+from .mesh import find_contact_cells, make_contact_mesh
 from .symmetric_factorisation import SymmetricFactorisation, find_reflections
 from .symmetric_plan import mesh_symmetric_plan, min_size_at_heads
 
-COORDINATE_AXES = (0, 1, 2)
+AXIS_INDICES = (0, 1, 2)
 """Indices of the axes x, y, z."""
 MIRROR_SIGNS = np.array([1.0, 1.0, -1.0])
 """Factors of x, y, z for the mirror image in the contact plane."""
@@ -32,29 +32,29 @@ FACE_TOLERANCE = 1e-6
 """Distance of a node from a face over the size of the body [1], below which the node lies on the face."""
 
 
-def _is_on_outer_face(body: ElasticBody, side: int) -> NDArray[np.bool_]:
+def _is_on_outer_face(body: ElasticBody, side_number: int) -> NDArray[np.bool_]:
     """Whether each node of a body lies on its outer face, opposite to the contact."""
-    return _is_close(np.abs(body.nodes[2]), float(np.abs(body.nodes[2]).max()))
+    return _is_on_face(np.abs(body.node_positions[2]), float(np.abs(body.node_positions[2]).max()))
 
 
-def _is_on_end_face(body: ElasticBody, side: int) -> NDArray[np.bool_]:
+def _is_on_end_face(body: ElasticBody, side_number: int) -> NDArray[np.bool_]:
     """Whether each node of a body lies on its end face: at +x for side 2, at -x for side 1."""
-    x = body.nodes[0] if side == 2 else -body.nodes[0]
-    return _is_close(x, float(x.max()))
+    x = body.node_positions[0] if side_number == 2 else -body.node_positions[0]
+    return _is_on_face(x, float(x.max()))
 
 
-def _is_under_head(body: ElasticBody, side: int) -> NDArray[np.bool_]:
+def _is_under_head(body: ElasticBody, side_number: int) -> NDArray[np.bool_]:
     """Whether each node of a body lies under a bolt head."""
-    under_head = np.zeros(body.nodes.shape[1], dtype=bool)
+    under_head = np.zeros(body.node_positions.shape[1], dtype=bool)
     for name, facets in body.mesh.boundaries.items():
         if name.startswith("head"):
-            under_head[body.basis.get_dofs(facets).flatten()] = True
+            under_head[body.finite_element_basis.get_dofs(facets).flatten()] = True
     return under_head
 
 
-def _is_close(coordinate: Array, face_coordinate: float) -> NDArray[np.bool_]:
+def _is_on_face(node_coordinates: Array, face_coordinate: float) -> NDArray[np.bool_]:
     """Whether each coordinate [m] equals a value [m] within FACE_TOLERANCE."""
-    return np.asarray(np.abs(coordinate - face_coordinate) < FACE_TOLERANCE * abs(face_coordinate))
+    return np.asarray(np.abs(node_coordinates - face_coordinate) < FACE_TOLERANCE * abs(face_coordinate))
 
 
 ATTACHMENT_NODES: Mapping[str, Callable[[ElasticBody, int], NDArray[np.bool_]]] = {
@@ -86,24 +86,24 @@ class JointFiniteElements:
 
     @classmethod
     def from_assembly(
-        cls, assembly: Assembly, attachment: str, refinement: float = 1.0
+        cls, assembly: Assembly, attachment_kind: str, refinement: float = 1.0
     ) -> "JointFiniteElements":
         """Mesh an assembly and find the unknowns at its attachments.
 
-        attachment : kind of attachment, a key of ATTACHMENT_NODES
-        refinement : [1] divides the sizes of all elements
+        attachment_kind : kind of attachment, a key of ATTACHMENT_NODES
+        refinement      : [1] divides the sizes of all elements
         """
-        graded_heads = attachment == "heads"
+        graded_heads = attachment_kind == "heads"
         plan = mesh_symmetric_plan(assembly, refinement, graded_heads)
         first_height = min_size_at_heads(assembly, refinement) if graded_heads else None
         first, second = (make_elastic_body(plan, assembly, side, refinement, first_height) for side in (1, 2))
         attachments, heads = [], []
         for side, body in enumerate((first, second), start=1):
-            nodes = np.flatnonzero(ATTACHMENT_NODES[attachment](body, side))
+            nodes = np.flatnonzero(ATTACHMENT_NODES[attachment_kind](body, side))
             attachments.append((3 * nodes[:, None] + np.arange(3)).ravel())
             heads.append(compute_bolt_head_loads(body, assembly))
-        interface = ContactInterface.from_mesh(contact_mesh(plan, find_contact_cells(plan, assembly)))
-        bolts = assembly.bolts.positions
+        interface = ContactInterface.from_mesh(make_contact_mesh(plan, find_contact_cells(plan, assembly)))
+        bolts = assembly.bolts.bolt_positions
         return cls((first, second), (attachments[0], attachments[1]), interface, (heads[0], heads[1]), bolts)
 
     @property
@@ -112,8 +112,8 @@ class JointFiniteElements:
         first, second = self.bodies
         return (
             (first.E, first.nu) == (second.E, second.nu)
-            and first.nodes.shape == second.nodes.shape
-            and np.array_equal(first.nodes, second.nodes * MIRROR_SIGNS[:, None])
+            and first.node_positions.shape == second.node_positions.shape
+            and np.array_equal(first.node_positions, second.node_positions * MIRROR_SIGNS[:, None])
             and np.array_equal(*self.attachment_unknowns)
             and np.allclose(*self.bolt_head_loads, rtol=0.0, atol=FACE_TOLERANCE)
         )
@@ -123,21 +123,21 @@ class JointFiniteElements:
         """Stiffness matrix (n, n) [N/m] of each body without its supports."""
         first, second = self.bodies
         if not self.is_mirrored:
-            return first.stiffness, second.stiffness
-        matrix = first.stiffness
+            return first.stiffness_matrix, second.stiffness_matrix
+        matrix = first.stiffness_matrix
         sign = np.tile(MIRROR_SIGNS, first.unknown_count // 3)
         row_sign = np.repeat(sign, np.diff(matrix.indptr))
         mirrored = row_sign * matrix.data * sign[matrix.indices]
         return matrix, sp.csr_matrix((mirrored, matrix.indices, matrix.indptr), shape=matrix.shape)
 
-    def relative_displacement_matrix(self, axis: int) -> sp.csr_matrix:
+    def relative_displacement_matrix(self, axis_index: int) -> sp.csr_matrix:
         """Matrix (q, n) [1]: displacement of side 2 relative to side 1 along an axis, per unknown.
 
         The displacement along z (axis 2) is the opening of the contact.
         """
         return sp.hstack(
             [
-                s * displacement_matrix(b, self.contact_interface, axis)
+                s * displacement_matrix(b, self.contact_interface, axis_index)
                 for s, b in zip((-1.0, 1.0), self.bodies, strict=True)
             ]
         ).tocsr()
@@ -150,25 +150,26 @@ class JointFiniteElements:
 
         Raises RuntimeError if a body can move freely.
         """
-        return self.linearize(interface_stiffness, bolt_stiffness).compliances()
+        return self.linearise_joint(interface_stiffness, bolt_stiffness).compliances()
 
     @property
     def elongation_matrix(self) -> Array:
         """Matrix (n, bolts) [1]: elongation of each bolt per unknown of both bodies."""
         return np.concatenate([-self.bolt_head_loads[0], self.bolt_head_loads[1]])
 
-    def linearize(self, interface_stiffness: Array, bolt_stiffness: float) -> "LinearJoint":
+    def linearise_joint(self, interface_stiffness: Array, bolt_stiffness: float) -> "LinearJoint":
         """Linearise the joint, with springs as interface, and solve for unit motions.
 
-        Parameters as for `compliances`.
+        interface_stiffness : stiffness per area (q, 3) [N/m3] of the interface along x, y, z
+        bolt_stiffness      : stiffness of each bolt [N/m]
 
         Raises RuntimeError if a body can move freely.
         """
         bodies = _block_diagonal(*self.stiffness_matrices)
-        opening = [self.relative_displacement_matrix(axis) for axis in COORDINATE_AXES]
+        opening = [self.relative_displacement_matrix(axis) for axis in AXIS_INDICES]
         weights = [
             sp.diags(self.contact_interface.quadrature_area * interface_stiffness[:, axis])
-            for axis in COORDINATE_AXES
+            for axis in AXIS_INDICES
         ]
         contact = sum(b.T @ w @ b for b, w in zip(opening, weights, strict=True))
         shanks = (
@@ -179,11 +180,12 @@ class JointFiniteElements:
         )
 
     def _solve_unit_motions(
-        self, body_matrix: sp.csr_matrix, connection_matrix: sp.csr_matrix
+        self, body_stiffness_matrix: sp.csr_matrix, connection_matrix: sp.csr_matrix
     ) -> tuple[Array, Array, IndexArray, SymmetricFactorisation]:
         """Solve for unit translations and rotations of side 2's attachment about the centroid of the contact.
 
-        body_matrix, connection_matrix : stiffness (n, n) [N/m] of the bodies; of interface and bolts
+        body_stiffness_matrix : (n, n) [N/m] of the bodies
+        connection_matrix     : stiffness (n, n) [N/m] of interface and bolts
 
         Returns the displacement (n, 6) of the elastic bodies, the displacement (n, 6) of rigid bodies, the
         free unknowns, and the factorisation of their stiffness matrix.
@@ -191,7 +193,7 @@ class JointFiniteElements:
         first, second = self.bodies
         x, y = self.contact_interface.centroid
         rigid = np.concatenate(
-            [np.zeros((first.unknown_count, 6)), second.rigid_motions((float(x), float(y)))]
+            [np.zeros((first.unknown_count, 6)), second.rigid_body_motions((float(x), float(y)))]
         )
         prescribed = np.concatenate(
             [self.attachment_unknowns[0], first.unknown_count + self.attachment_unknowns[1]]
@@ -199,10 +201,10 @@ class JointFiniteElements:
         free = np.setdiff1d(np.arange(rigid.shape[0]), prescribed)
         displacement = np.zeros_like(rigid)
         displacement[prescribed] = rigid[prescribed]
-        matrix = (body_matrix + connection_matrix)[free][:, free]
+        matrix = (body_stiffness_matrix + connection_matrix)[free][:, free]
         factor = SymmetricFactorisation(matrix, find_reflections(matrix, self.bodies, free))
-        loads = body_matrix @ displacement + connection_matrix @ displacement
-        displacement[free] = -factor.solve(loads[free])
+        loads = body_stiffness_matrix @ displacement + connection_matrix @ displacement
+        displacement[free] = -factor.solve_linear_system(loads[free])
         return displacement, rigid, free, factor
 
 
@@ -219,41 +221,50 @@ def _block_diagonal(first_matrix: sp.csr_matrix, second_matrix: sp.csr_matrix) -
 class LinearJoint:
     """Linear model of a joint: the interface is a layer of springs.
 
-    body_matrix, contact_matrix, bolt_matrix : stiffness matrices (n, n) [N/m] of bodies, interface, bolts
+    body_stiffness_matrix, contact_stiffness_matrix, bolt_stiffness_matrix : (n, n) [N/m] of bodies,
+        interface, bolts
     bolt_stiffness : stiffness of each bolt [N/m]
-    unit_motion_displacement : (n, 6) for unit motions of side 2's attachment, about the centroid of the
-        contact
-    rigid_displacement : (n, 6) for the same motions if the bodies were rigid
+    unit_motion_displacement : displacement (n, 6) for 3 unit translations and 3 unit rotations of side 2's
+        attachment, about the centroid of the contact
+    rigid_displacement : displacement (n, 6) for the same motions if the bodies were rigid
     free_unknowns : unknowns that no attachment prescribes
     stiffness_factor : factorisation of the stiffness matrix of the free unknowns
     """
 
     joint_model: JointFiniteElements
-    body_matrix: sp.csr_matrix
-    contact_matrix: sp.csr_matrix
-    bolt_matrix: sp.csr_matrix
+    body_stiffness_matrix: sp.csr_matrix
+    contact_stiffness_matrix: sp.csr_matrix
+    bolt_stiffness_matrix: sp.csr_matrix
     bolt_stiffness: float
     unit_motion_displacement: Array
     rigid_displacement: Array
     free_unknowns: IndexArray
     stiffness_factor: SymmetricFactorisation
 
-    def solve(self, loads: Array) -> Array:
+    def solve_displacements(self, load_cases: Array) -> Array:
         """Displacements (n, s) [m] of the bodies in s load cases (n, s) [N], with both attachments fixed."""
-        displacement = np.zeros_like(loads)
-        displacement[self.free_unknowns] = self.stiffness_factor.solve(loads[self.free_unknowns])
+        displacement = np.zeros_like(load_cases)
+        displacement[self.free_unknowns] = self.stiffness_factor.solve_linear_system(
+            load_cases[self.free_unknowns]
+        )
         return displacement
 
     @cached_property
-    def stiffness(self) -> Array:
+    def stiffness_matrix(self) -> Array:
         """Stiffness matrix (6, 6) [N/m, N, N.m] of the joint about the centroid of its contact."""
         displacement = self.unit_motion_displacement
-        forces = (m @ displacement for m in (self.contact_matrix, self.body_matrix, self.bolt_matrix))
+        forces = (
+            m @ displacement
+            for m in (self.contact_stiffness_matrix, self.body_stiffness_matrix, self.bolt_stiffness_matrix)
+        )
         return np.asarray(displacement.T @ sum(forces))
 
     def compliances(self) -> Compliances:
         """Compliances of the joint about its contact centroid, by source: interface, members, bolts."""
-        sources, total = (self.contact_matrix, self.body_matrix, self.bolt_matrix), np.diag(self.stiffness)
+        sources, total = (
+            (self.contact_stiffness_matrix, self.body_stiffness_matrix, self.bolt_stiffness_matrix),
+            np.diag(self.stiffness_matrix),
+        )
         stored = np.stack(
             [
                 np.sum(self.unit_motion_displacement * (matrix @ self.unit_motion_displacement), axis=0)
@@ -262,11 +273,11 @@ class LinearJoint:
         )
         contact, bolts = (
             np.diag(self.rigid_displacement.T @ (matrix @ self.rigid_displacement))
-            for matrix in (self.contact_matrix, self.bolt_matrix)
+            for matrix in (self.contact_stiffness_matrix, self.bolt_stiffness_matrix)
         )
         bolt_force = (
             self.bolt_stiffness
             * (self.joint_model.elongation_matrix.T @ self.unit_motion_displacement)
-            @ np.linalg.inv(self.stiffness)
+            @ np.linalg.inv(self.stiffness_matrix)
         )
         return Compliances(stored / total**2, 1.0 / contact, bolts, bolt_force)

@@ -7,33 +7,33 @@ from typing import NamedTuple
 class SourcedNumber(NamedTuple):
     """Number with its origin (catalogue, estimate, ...) and its source.
 
-    value          : [SI]
-    origin         : one of parameters.ORIGINS
-    source         : document, table or estimate that the number is taken from
-    is_upper_limit : whether the number is printed as an upper limit of the quantity, not as its value
-    interval       : lower and upper end of an estimate [SI]; None if unknown
+    si_value          : number in SI units
+    value_origin      : one of parameters.VALUE_ORIGINS
+    value_source      : document, table or estimate that the number is taken from
+    is_upper_limit    : whether the catalogue states the number as an upper limit of the quantity
+    estimate_interval : lower and upper end of an estimate [SI]; None if unknown
     """
 
-    value: float
-    origin: str
-    source: str
+    si_value: float
+    value_origin: str
+    value_source: str
     is_upper_limit: bool = False
-    interval: tuple[float, float] | None = None
+    estimate_interval: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class CatalogueColumn:
     """Column of a catalogue of bought joints: name, SI unit, meaning, and display unit."""
 
-    name: str
-    unit: str
-    meaning: str
+    column_name: str
+    si_unit: str
+    column_meaning: str
     display_unit: str
 
 
 @dataclass(frozen=True, slots=True)
 class CatalogueEntry:
-    """Entry of a catalogue of bought joints: name of the joint, and {column: number} of the known numbers."""
+    """Entry of a catalogue of bought joints: name of the joint, {column name: number} of known numbers."""
 
-    name: str
-    numbers: dict[str, SourcedNumber]
+    joint_name: str
+    known_numbers: dict[str, SourcedNumber]

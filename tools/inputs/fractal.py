@@ -9,7 +9,7 @@ import numpy as np
 from jointfmu.quantity import Number
 
 
-def wave_power(frequency: Number, H: Number, G: Number) -> Number:
+def height_variance_density(spatial_frequency: Number, H: Number, G: Number) -> Number:
     """Height variance Phi [m2] of a self-affine surface per unit of ln(frequency); frequency [1/m].
 
     Phi = G^(2(1-H)) frequency^(-2H)/2 with the Hurst exponent H and the roughness G [m].
@@ -18,11 +18,13 @@ def wave_power(frequency: Number, H: Number, G: Number) -> Number:
     Eq. 5; Yu 2022, Eq. 4) and there is one in every ln(gamma). Phi/frequency is the one-sided power
     spectral density of Zhao 2018, Eq. 30, without its 1/ln(gamma).
     """
-    return 0.5 * G ** (2.0 * (1.0 - H)) * frequency ** (-2.0 * H)
+    return 0.5 * G ** (2.0 * (1.0 - H)) * spatial_frequency ** (-2.0 * H)
 
 
-def structure_constant(H: Number) -> Number:
+def structure_function_constant(H: Number) -> Number:
     """Constant C [1] of the structure function S(tau) = C G^(2(1-H)) tau^(2H) of a profile, 0 < H < 1.
+
+    The symbols are lag tau [m], Hurst exponent H [1] and fractal roughness G [m].
 
     C = (2 pi)^(2H) integral_0^inf u^(-1-2H) (1 - cos u) du = (2 pi)^(2H) pi/(2 Gamma(1+2H) sin(pi H)).
     """
@@ -36,31 +38,35 @@ def second_difference_ratio(H: Number) -> Number:
     """Ratio V/S = 4 - 4^H [1] of two structure functions of heights, for a power law S(tau) ~ tau^(2 H).
 
     S is the mean square of the first difference of heights at the lag tau, V(tau) = 4 S(tau) - S(2 tau) the
-    mean square of the second difference.
+    mean square of the second difference, H the Hurst exponent.
     """
     return 4.0 - 4.0**H
 
 
-def profile_power_ratio(H: Number) -> Number:
+def profile_variance_ratio(H: Number) -> Number:
     """Ratio kappa [1] of the height variance Phi of a profile to the variance of its isotropic surface.
 
-    kappa = mean of |cos a|^(2H) over all directions a = Gamma(H + 1/2)/(sqrt(pi) Gamma(H + 1)). A wave that
-    crosses the profile at an angle appears longer in the profile.
+    kappa is the mean of |cos a|^(2H) over all directions a, which is Gamma(H + 1/2)/(sqrt(pi) Gamma(H + 1)),
+    with the Hurst exponent H. A wave that crosses the profile at an angle appears longer in the profile.
     """
     from scipy.special import gammaln  # slow to import, and every command imports this module
 
     return np.exp(gammaln(H + 0.5) - gammaln(H + 1.0)) / np.sqrt(np.pi)
 
 
-def areal_roughness(G: Number, H: Number) -> Number:
-    """Fractal roughness G [m] of the isotropic surface (Hu 2023, Eq. 1) with given G [m] of profiles."""
-    return G * profile_power_ratio(H) ** (-0.5 / (1.0 - H))
+def areal_fractal_roughness(G: Number, H: Number) -> Number:
+    """Fractal roughness [m] of an isotropic surface (Hu 2023, Eq. 1), from that of its profiles, G [m].
+
+    H : Hurst exponent [1]
+    """
+    return G * profile_variance_ratio(H) ** (-0.5 / (1.0 - H))
 
 
-def zhao_roughness(G: Number, H: Number, gamma: Number) -> Number:
-    """Fractal roughness G [m] as defined in Zhao 2018, Eqs. 1 and 30.
+def zhao_fractal_roughness(G: Number, H: Number, gamma: Number) -> Number:
+    """Fractal roughness [m] as defined in Zhao 2018, Eqs. 1 and 30, from G [m] of this package.
 
-    The waves there do not have the factor sqrt(ln gamma).
+    The waves in Zhao 2018 do not have the factor sqrt(ln gamma); gamma is the frequency ratio of the waves,
+    H the Hurst exponent.
     """
     return G * np.log(gamma) ** (0.5 / (1.0 - H))
 
@@ -73,8 +79,9 @@ def hurst_exponent(D: Number, is_areal: bool = False) -> Number:
 def rms_height(
     D: Number, G: Number, longest_wave: Number, is_areal: bool = False, gamma: Number | None = None
 ) -> Number:
-    """Rms height h [m] of an isotropic surface with D [1] and G [m], for all waves up to the longest one.
+    """Rms height h [m] of an isotropic fractal surface, for all waves up to the longest one.
 
+    D, G         : fractal dimension [1] and fractal roughness [m]
     longest_wave : longest wavelength L [m]
     is_areal     : whether D and G are those of the surface (Hu 2023, Eq. 1) or of its profiles (Zhao 2018,
                    Eq. 5; Yu 2022, Eq. 4)
@@ -82,15 +89,16 @@ def rms_height(
                    h^2 = Phi ln(gamma)/(1 - gamma^(-2H)). None: the continuous spectrum, h^2 = Phi/(2H), which
                    is the mean over all positions of the waves
 
-    Phi = G_s^(2(1-H)) L^(2H)/2 is `wave_power` at 1/L. Every profile of the surface has the same height if
-    the surface has no longer waves.
+    Phi = G_s^(2(1-H)) L^(2H)/2 is `height_variance_density` at 1/L, with the fractal roughness G_s of the
+    surface and the Hurst exponent H. Every profile of the surface has the same height if the surface has no
+    longer waves.
     """
     H = hurst_exponent(D, is_areal)
-    power = wave_power(1.0 / longest_wave, H, _to_areal_roughness(G, H, is_areal))
+    power = height_variance_density(1.0 / longest_wave, H, _convert_to_areal_roughness(G, H, is_areal))
     share = 0.5 / H if gamma is None else np.log(gamma) / (1.0 - gamma ** (-2.0 * H))
     return np.sqrt(power * share)
 
 
-def _to_areal_roughness(G: Number, H: Number, is_areal: bool) -> Number:
+def _convert_to_areal_roughness(G: Number, H: Number, is_areal: bool) -> Number:
     """Fractal roughness G [m] of the isotropic surface, from G [m] of the surface or of its profiles."""
-    return G if is_areal else areal_roughness(G, H)
+    return G if is_areal else areal_fractal_roughness(G, H)

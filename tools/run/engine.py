@@ -24,81 +24,84 @@ from jointfmu.quantity import Array, build_parameter_set, flatten_parameters
 if TYPE_CHECKING:
     from jointfmu_fmu_src.native.library import JointLibrary
 
-_ERROR_STATUS, _WARNING_STATUS = 3, 1
+_FMI3_ERROR_STATUS, _FMI3_WARNING_STATUS = 3, 1
 """Status of a log message in FMI 3.0."""
-_LOGGER_TYPE = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int, ctypes.c_char_p, ctypes.c_char_p)
+_LOG_CALLBACK_C_TYPE = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int, ctypes.c_char_p, ctypes.c_char_p)
 """C type of the log callback of an FMI 3.0 instance."""
-_POINTER_TYPE = ctypes.c_void_p
+_POINTER_C_TYPE = ctypes.c_void_p
 """C type of the pointers of an instance."""
-_SIZE_TYPE = ctypes.c_size_t
+_ARRAY_SIZE_C_TYPE = ctypes.c_size_t
 """C type of array sizes."""
 
 
-class PathResult(NamedTuple):
-    """Outputs along a path of inputs.
+class LoadPathResult(NamedTuple):
+    """Outputs of a joint along a path of its inputs.
 
-    columns  : {variable: values (n)}: all inputs, then all outputs [SI]
-    warnings : one line for each validity limit that the path exceeds
+    variable_columns  : {variable: values (n)}: all inputs, then all outputs [SI]
+    validity_warnings : one line for each validity limit that the path exceeds
     """
 
-    columns: dict[str, Array]
-    warnings: tuple[str, ...]
+    variable_columns: dict[str, Array]
+    validity_warnings: tuple[str, ...]
 
 
 class JointEngine(Protocol):
-    """Interface of a joint that can be evaluated along paths of its inputs.
+    """Protocol of a joint that can be evaluated along paths of its inputs.
 
-    model : inputs and outputs of the joint
+    fmu_model : model of the joint's FMU, with its inputs and outputs
     """
 
-    model: Model
+    fmu_model: Model
 
-    def set_parameters(self, values: Mapping[str, Any]) -> None:
+    def set_parameters(self, parameter_values: Mapping[str, Any]) -> None:
         """Set parameters by structured name [SI]. They are checked at the next evaluation."""
 
-    def follow(self, inputs: Mapping[str, ArrayLike], *, each_from_rest: bool = False) -> PathResult:
+    def evaluate_path(
+        self, inputs: Mapping[str, ArrayLike], *, restart_at_each_point: bool = False
+    ) -> LoadPathResult:
         """Evaluate the joint along a path that starts in the virgin state.
 
-        inputs         : numbers or columns (n) [SI]; other inputs have their start values
-        each_from_rest : every point is reached on a straight path of its own from the virgin state
+        inputs                : numbers or columns (n) [SI]; other inputs have their start values
+        restart_at_each_point : every point is reached on a straight path of its own from the virgin state
 
         Raises ValueError, one line, for a value that the joint refuses.
         """
 
 
-def open_joint(model: Model, parameter_file: ParameterFile) -> JointEngine:
-    """Open a joint for evaluation: by its compiled library if there is one or a compiler, else by Python.
+def open_joint(fmu_model: Model, parameter_file: ParameterFile) -> JointEngine:
+    """Open a joint for evaluation, by its compiled library or, without library and compiler, in Python.
 
     Prints one line on standard error, once in a process, if it is evaluated in Python.
 
     Raises ValueError, one line, for parameters that the joint refuses.
     """
-    model = model.with_parameters(parameter_file.joint, parameter_file.values)
+    fmu_model = fmu_model.with_parameters(parameter_file.joint, parameter_file.values)
     try:
-        return CompiledJoint(model, parameter_file)
+        return CompiledJoint(fmu_model, parameter_file)
     except (ImportError, OSError, RuntimeError) as error:
         _announce_python_evaluation(" ".join(str(error).split()))
-        return PythonJoint(model, parameter_file)
+        return PythonJoint(fmu_model, parameter_file)
 
 
-class VariableJoint:
+class ParametricJoint:
     """Joint that is evaluated with many parameter sets, for example by a fit or a study.
 
-    Parameters that the FMU exposes are set in the open joint. For other values of the remaining parameters
-    the joint is opened again; the last MAX_OPEN_JOINTS stay open.
+    Parameters that the FMU exposes are set in an open joint. For each combination of the other parameters
+    the joint is opened anew; the last MAX_OPEN_JOINTS joints stay open.
 
-    model          : inputs and outputs of the joint
-    parameter_file : parameters that `with_values` changes; None: those of the first call of `with_parameters`
+    fmu_model      : FMU model of the joint, with its inputs and outputs
+    parameter_file : parameters that `open_with_values` changes; None: those of the first call of
+        `open_with_parameters`
     """
 
     MAX_OPEN_JOINTS = 4
 
-    def __init__(self, model: Model, parameter_file: ParameterFile | None = None) -> None:
-        self._model = model
+    def __init__(self, fmu_model: Model, parameter_file: ParameterFile | None = None) -> None:
+        self._model = fmu_model
         self._engines: dict[tuple[Any, ...], tuple[JointEngine, dict[str, Any]]] = {}
-        self._set_file(parameter_file)
+        self._set_parameter_file(parameter_file)
 
-    def _set_file(self, parameter_file: ParameterFile | None) -> None:
+    def _set_parameter_file(self, parameter_file: ParameterFile | None) -> None:
         """Set the parameter file whose values are changed, and close the open joints."""
         self._file = parameter_file
         self._engines.clear()
@@ -110,44 +113,55 @@ class VariableJoint:
                 .keys()
             )
 
-    def with_parameters(self, parameters: Any) -> JointEngine:
-        """Return an engine of the joint with a parameter set. Engines returned before become invalid.
+    def open_with_parameters(self, parameter_set: Any) -> JointEngine:
+        """Open the joint with a parameter set. Engines returned before become invalid.
 
-        Raises ValueError as `open_joint` and `JointEngine.follow`.
+        Raises ValueError as `open_joint` and `JointEngine.evaluate_path`.
         """
-        values = flatten_parameters(parameters)
+        values = flatten_parameters(parameter_set)
         if (
             self._file is None
-            or type(self._file.values) is not type(parameters)
+            or type(self._file.values) is not type(parameter_set)
             or self._stated_values.keys() != values.keys()
         ):
-            self._set_file(ParameterFile(self._model.joint, "trial", parameters, {}, {}))
-        return self.with_values(values)
+            self._set_parameter_file(ParameterFile(self._model.joint, "trial", parameter_set, {}, {}))
+        return self.open_with_values(values)
 
-    def with_values(self, values: Mapping[str, Any]) -> JointEngine:
-        """Evaluation of the joint with values {structured name: value [SI]} in place of its file's.
+    def open_with_values(self, parameter_values: Mapping[str, Any]) -> JointEngine:
+        """Open the joint with parameter values {structured name: value [SI]} in place of those of its file.
 
-        An engine that was returned before must not be used any more. Raises ValueError as `open_joint`.
+        Engines returned before become invalid. Raises ValueError as `open_joint`.
         """
         stated, exposed = self._stated_values, self._exposed
-        hidden = {k: v for k, v in values.items() if k not in exposed and v != stated[k]}
-        engine, current = self._find_engine(hidden)
-        needed = {k: values.get(k, stated[k]) for k in {*current, *values} if k in exposed}
+        hidden = {k: v for k, v in parameter_values.items() if k not in exposed and v != stated[k]}
+        engine, current = self._find_open_joint(hidden)
+        needed = {
+            k: parameter_values.get(k, stated[k]) for k in {*current, *parameter_values} if k in exposed
+        }
         if changed := {k: v for k, v in needed.items() if current.get(k, stated[k]) != v}:
             current |= changed
             engine.set_parameters(changed)
         return engine
 
-    def _find_engine(self, hidden_values: Mapping[str, Any]) -> tuple[JointEngine, dict[str, Any]]:
-        """Find the engine with these hidden parameters, or open it; returns also its exposed parameters.
+    def _find_open_joint(
+        self, hidden_parameter_values: Mapping[str, Any]
+    ) -> tuple[JointEngine, dict[str, Any]]:
+        """Find an open joint by those of its parameters that the FMU does not expose, or open it.
 
-        hidden_values : {name: value} of parameters that the FMU does not expose
+        Returns the joint and its present values of exposed parameters.
+
+        hidden_parameter_values : {name: value} of parameters that the FMU does not expose, if not as in the
+            parameter file
         """
-        key = tuple(sorted(hidden_values.items()))
+        key = tuple(sorted(hidden_parameter_values.items()))
         found = self._engines.pop(key, None)
         if found is None:
             assert self._file is not None
-            file = self._file.with_values(hidden_values, "user", "trial") if hidden_values else self._file
+            file = (
+                self._file.with_values(hidden_parameter_values, "user", "trial")
+                if hidden_parameter_values
+                else self._file
+            )
             if len(self._engines) >= self.MAX_OPEN_JOINTS:
                 del self._engines[next(iter(self._engines))]
             found = open_joint(self._model, file), {}
@@ -156,122 +170,139 @@ class VariableJoint:
 
 
 @lru_cache(maxsize=1)
-def _announce_python_evaluation(reason: str) -> None:
+def _announce_python_evaluation(fallback_reason: str) -> None:
     """Print once, on standard error, that a joint is evaluated in Python, and why."""
     print(
-        f"jointfmu: the joint is evaluated by its Python law, which is slow ({reason}); "
+        f"jointfmu: the joint is evaluated by its Python law, which is slow ({fallback_reason}); "
         "for the compiled joint: pip install 'jointfmu[build]'",
         file=sys.stderr,
     )
 
 
-class LoadedLibrary:
-    """Instance of a model in the loaded library of its FMU (FMI 3.0, co-simulation).
+class LoadedFmuLibrary:
+    """Instance of an FMU model in the loaded library of its FMU (FMI 3.0, co-simulation).
 
-    model : its inputs, outputs and parameters
+    fmu_model : inputs, outputs and parameters of the FMU
 
     Raises OSError if the library cannot be loaded, RuntimeError if it gives no instance.
     """
 
-    def __init__(self, model: Model, library: "JointLibrary") -> None:
-        self.model = model
+    def __init__(self, fmu_model: Model, joint_library: "JointLibrary") -> None:
+        self.fmu_model = fmu_model
         self._messages: list[tuple[int, str]] = []
         self._lock = Lock()  # calls of the library release Python's own lock
-        fields = model.parameter_fields()
-        self._names = tuple(v.name for v in (*model.inputs, *model.outputs))
+        fields = fmu_model.parameter_fields()
+        self._names = tuple(v.name for v in (*fmu_model.inputs, *fmu_model.outputs))
         self._references = {name: i for i, name in enumerate(["time", *self._names, *fields])}
         self._booleans = {name for name, item in fields.items() if "allowed" in item.metadata}
         messages = self._messages
 
-        def log(environment: Any, status: int, message_category: bytes, message: bytes) -> None:
+        def store_log_message(
+            environment: Any, fmi_status: int, message_category: bytes, message_text: bytes
+        ) -> None:
             """Callback of the instance: store its log message."""
-            messages.append((status, message.decode("utf-8", "replace")))
+            messages.append((fmi_status, message_text.decode("utf-8", "replace")))
 
-        self._logger = _LOGGER_TYPE(log)
+        self._logger = _LOG_CALLBACK_C_TYPE(store_log_message)
         folder = tempfile.mkdtemp(prefix="jointfmu-")
         try:
-            path = Path(folder) / model.title
-            path.write_bytes(library.content)
+            path = Path(folder) / fmu_model.title
+            path.write_bytes(joint_library.library_bytes)
             self._library = ctypes.CDLL(str(path))
         except BaseException:
             shutil.rmtree(folder, ignore_errors=True)
             raise
-        self._declare_functions()
+        self._declare_c_functions()
         instance = self._library.fmi3InstantiateCoSimulation(
-            model.title.encode(), library.token.encode(), None, False, False, False, False, None, 0, None,
-            self._logger, None,
+            fmu_model.title.encode(), joint_library.instantiation_token.encode(), None,
+            False, False, False, False, None, 0,
+            None, self._logger, None,
         )  # fmt: skip
-        self._instance = _POINTER_TYPE(instance)
+        self._instance = _POINTER_C_TYPE(instance)
         # The file stays as long as the library is loaded: another file may get its number on the disk, and
         # the loader would take it for this one.
-        weakref.finalize(self, _close_library, self._library, self._instance, self._logger, folder)
+        weakref.finalize(self, _unload_library, self._library, self._instance, self._logger, folder)
         if not instance:
-            raise RuntimeError(self._messages[-1][1] if self._messages else "no instance of the library")
+            raise RuntimeError(
+                self._messages[-1][1] if self._messages else "the compiled model cannot be instantiated"
+            )
 
-    def _declare_functions(self) -> None:
-        """Declare argument types of the C functions of the library."""
+    def _declare_c_functions(self) -> None:
+        """Declare argument types of the FMI functions of the loaded library, for ctypes."""
         lib = self._library
-        lib.fmi3InstantiateCoSimulation.restype = _POINTER_TYPE
+        lib.fmi3InstantiateCoSimulation.restype = _POINTER_C_TYPE
         lib.fmi3InstantiateCoSimulation.argtypes = [
             ctypes.c_char_p, ctypes.c_char_p, ctypes.c_char_p, ctypes.c_bool, ctypes.c_bool, ctypes.c_bool,
-            ctypes.c_bool, _POINTER_TYPE, _SIZE_TYPE, _POINTER_TYPE, _LOGGER_TYPE, _POINTER_TYPE,
+            ctypes.c_bool, _POINTER_C_TYPE, _ARRAY_SIZE_C_TYPE, _POINTER_C_TYPE, _LOG_CALLBACK_C_TYPE,
+            _POINTER_C_TYPE,
         ]  # fmt: skip
         for function in (lib.fmi3SetFloat64, lib.fmi3SetBoolean):
-            function.argtypes = [_POINTER_TYPE, _POINTER_TYPE, _SIZE_TYPE, _POINTER_TYPE, _SIZE_TYPE]
+            function.argtypes = [
+                _POINTER_C_TYPE,
+                _POINTER_C_TYPE,
+                _ARRAY_SIZE_C_TYPE,
+                _POINTER_C_TYPE,
+                _ARRAY_SIZE_C_TYPE,
+            ]
 
-    def set_parameters(self, values: Mapping[str, Any]) -> None:
-        """Set exposed parameters and other variables {name: SI value}; ValueError if one is refused."""
+    def set_parameters(self, parameter_values: Mapping[str, Any]) -> None:
+        """Set parameters and other variables {name: SI value} of the FMU; ValueError if it rejects one."""
         for is_boolean, function, kind in (
             (False, self._library.fmi3SetFloat64, np.float64),
             (True, self._library.fmi3SetBoolean, np.bool_),
         ):
-            names = [name for name in values if (name in self._booleans) == is_boolean]
+            names = [name for name in parameter_values if (name in self._booleans) == is_boolean]
             if names:
-                references = self._list_references(names)
-                numbers = np.array([values[name] for name in names], kind)
+                references = self._list_value_references(names)
+                numbers = np.array([parameter_values[name] for name in names], kind)
                 if function(
                     self._instance, references.ctypes.data, len(names), numbers.ctypes.data, len(names)
                 ):
                     raise ValueError(self._take_error_message())
 
-    def _list_references(self, names: Sequence[str]) -> Any:
-        """Value references of variables, as a C array."""
-        return np.array([self._references[name] for name in names], np.uint32)
+    def _list_value_references(self, variable_names: Sequence[str]) -> Any:
+        """Value references (FMI) of variables, as a C array."""
+        return np.array([self._references[name] for name in variable_names], np.uint32)
 
     def _take_error_message(self) -> str:
-        """Last error message of the instance, which is then cleared."""
-        text = next((text for status, text in reversed(self._messages) if status >= _ERROR_STATUS), "refused")
+        """Return the last error message of the instance, and clear all its messages."""
+        text = next(
+            (text for status, text in reversed(self._messages) if status >= _FMI3_ERROR_STATUS), "refused"
+        )
         self._messages.clear()
         return text
 
 
-class CompiledJoint(LoadedLibrary):
-    """Joint that is evaluated by the compiled library of its FMU. See `JointEngine`.
+class CompiledJoint(LoadedFmuLibrary):
+    """Joint that is evaluated along paths of its inputs by the compiled library of its FMU.
 
     Raises ImportError if the library must be compiled and a package is missing, RuntimeError if the compiler
     fails or compiles for no such platform, OSError if the library cannot be loaded.
     """
 
-    def __init__(self, model: Model, parameter_file: ParameterFile) -> None:
+    def __init__(self, fmu_model: Model, parameter_file: ParameterFile) -> None:
         from jointfmu_fmu_src.native.library import make_joint_library
 
-        super().__init__(model, make_joint_library(model, parameter_file))
-        inputs, outputs = [v.name for v in model.inputs], [v.name for v in model.outputs]
-        self._input_references, self._output_references = map(self._list_references, (inputs, outputs))
+        super().__init__(fmu_model, make_joint_library(fmu_model, parameter_file))
+        inputs, outputs = [v.name for v in fmu_model.inputs], [v.name for v in fmu_model.outputs]
+        self._input_references, self._output_references = map(self._list_value_references, (inputs, outputs))
         self._input_columns = {name: i for i, name in enumerate(inputs)}
         self._start_row = np.array([[float(parameter_file.start_value(name)) for name in inputs]])
 
-    def _declare_functions(self) -> None:
-        """Declare argument types of the C function that follows a path."""
-        super()._declare_functions()
-        self._library.jointfmu_follow_path.restype = _SIZE_TYPE
+    def _declare_c_functions(self) -> None:
+        """Declare argument types of the library's function that evaluates a path, for ctypes."""
+        super()._declare_c_functions()
+        self._library.jointfmu_follow_path.restype = _ARRAY_SIZE_C_TYPE
         self._library.jointfmu_follow_path.argtypes = [
-            _POINTER_TYPE, ctypes.c_bool, _SIZE_TYPE, _SIZE_TYPE, _POINTER_TYPE, _POINTER_TYPE, _SIZE_TYPE,
-            _POINTER_TYPE, _POINTER_TYPE,
+            _POINTER_C_TYPE, ctypes.c_bool, _ARRAY_SIZE_C_TYPE,
+            _ARRAY_SIZE_C_TYPE, _POINTER_C_TYPE, _POINTER_C_TYPE,
+            _ARRAY_SIZE_C_TYPE, _POINTER_C_TYPE, _POINTER_C_TYPE,
         ]  # fmt: skip
 
-    def follow(self, inputs: Mapping[str, ArrayLike], *, each_from_rest: bool = False) -> PathResult:
-        """Evaluate the joint along a path of inputs from the virgin state, see `JointEngine.follow`."""
+    def evaluate_path(
+        self, inputs: Mapping[str, ArrayLike], *, restart_at_each_point: bool = False
+    ) -> LoadPathResult:
+        """Evaluate the joint along a path of inputs from rest, see `JointEngine.evaluate_path`."""
         sizes = {np.size(column) for column in inputs.values()} - {1}
         values = np.repeat(self._start_row, next(iter(sizes), 1), axis=0)
         for name, column in inputs.items():
@@ -281,63 +312,65 @@ class CompiledJoint(LoadedLibrary):
         with self._lock:
             self._messages.clear()
             done = self._library.jointfmu_follow_path(
-                self._instance, each_from_rest, len(values),
+                self._instance, restart_at_each_point, len(values),
                 len(given), given.ctypes.data, values.ctypes.data,
                 len(read), read.ctypes.data, results.ctypes.data,
             )  # fmt: skip
             if done < len(values):
                 raise ValueError(self._take_error_message())
-            texts = [text for status, text in self._messages if status == _WARNING_STATUS]
+            texts = [text for status, text in self._messages if status == _FMI3_WARNING_STATUS]
             warnings = tuple(dict.fromkeys(texts))
-        return PathResult(dict(zip(self._names, (*values.T, *results.T), strict=True)), warnings)
+        return LoadPathResult(dict(zip(self._names, (*values.T, *results.T), strict=True)), warnings)
 
 
-def _close_library(library: Any, instance: Any, logger: Any, library_folder: str) -> None:
+def _unload_library(c_library: Any, instance_pointer: Any, log_callback: Any, library_folder: str) -> None:
     """Free the instance of a library, unload the library and remove its folder.
 
-    logger : log callback of the instance; it must exist until the library is unloaded
+    log_callback : log callback of the instance; it must exist until the library is unloaded
     """
     import _ctypes
 
-    if instance:
-        library.fmi3FreeInstance(instance)
+    if instance_pointer:
+        c_library.fmi3FreeInstance(instance_pointer)
     if sys.platform == "win32":
-        _ctypes.FreeLibrary(library._handle)
+        _ctypes.FreeLibrary(c_library._handle)
     else:
-        _ctypes.dlclose(library._handle)
+        _ctypes.dlclose(c_library._handle)
     shutil.rmtree(library_folder, ignore_errors=True)
 
 
 class PythonJoint:
-    """Joint that is evaluated by its Python law. See `JointEngine`."""
+    """Joint that is evaluated along paths of its inputs in Python, without a compiled library."""
 
-    def __init__(self, model: Model, parameter_file: ParameterFile) -> None:
-        self.model = model
+    def __init__(self, fmu_model: Model, parameter_file: ParameterFile) -> None:
+        self.fmu_model = fmu_model
         self._parameter_class, self._values = type(parameter_file.values), dict(parameter_file.values_by_name)
-        self._start_values = {v.name: parameter_file.start_value(v.name) for v in model.inputs}
-        self._joint: Any = model.tabulate(parameter_file.values)
+        self._start_values = {v.name: parameter_file.start_value(v.name) for v in fmu_model.inputs}
+        self._joint: Any = fmu_model.tabulate(parameter_file.values)
 
-    def set_parameters(self, values: Mapping[str, Any]) -> None:
+    def set_parameters(self, parameter_values: Mapping[str, Any]) -> None:
         """Set parameters by structured name [SI], see `JointEngine.set_parameters`."""
-        self._values |= values
+        self._values |= parameter_values
         self._joint = None
 
-    def follow(self, inputs: Mapping[str, ArrayLike], *, each_from_rest: bool = False) -> PathResult:
-        """Evaluate the joint along a path of inputs from the virgin state, see `JointEngine.follow`."""
+    def evaluate_path(
+        self, inputs: Mapping[str, ArrayLike], *, restart_at_each_point: bool = False
+    ) -> LoadPathResult:
+        """Evaluate the joint along a path of inputs from rest, see `JointEngine.evaluate_path`."""
         if self._joint is None:
-            self._joint = self.model.tabulate(build_parameter_set(self._parameter_class, self._values))
-        model, joint = self.model, self._joint
+            self._joint = self.fmu_model.tabulate(build_parameter_set(self._parameter_class, self._values))
+        model, joint = self.fmu_model, self._joint
         columns = self._start_values | {**inputs}
         arrays = np.broadcast_arrays(*(np.atleast_1d(np.asarray(x, np.float64)) for x in columns.values()))
         points = [dict(zip(columns, map(float, point), strict=True)) for point in zip(*arrays, strict=True)]
         history = model.initial_history(joint) if model.initial_history else None
         rows = []
         for point in points:
-            if model.advance is None or each_from_rest:
+            if model.advance is None or restart_at_each_point:
                 outputs = model.evaluate(joint, point)
             else:
                 outputs, history = model.advance(joint, point, history)
             rows.append(point | {name: float(value) for name, value in outputs.items()})
         found = {name: np.array([row[name] for row in rows]) for name in rows[0]}
         texts = (text for row in rows for text in model.find_warnings(joint, row).values())
-        return PathResult(found, tuple(dict.fromkeys(texts)))
+        return LoadPathResult(found, tuple(dict.fromkeys(texts)))

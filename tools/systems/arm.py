@@ -16,7 +16,7 @@ system has the coupled links, see `fmu.arm_links`. In archives of separate FMUs 
 an inertia. The inertia is that about the axis at the end of the motion with the other axes locked. A torque
 acts on it: the inertia torque of the motion minus the torque by inverse dynamics of the rigid arm. So the
 drive carries the torque of the rigid arm and the oscillation of the link inertia. The coupling of the axes by
-their wind-up is neglected, see UNCOUPLED_NOTE.
+their wind-up is neglected, see UNCOUPLED_AXES_NOTE.
 
 At zero angles the arm is upright: every link is along z. Each link rotates about z or y relative to the link
 before it. Inverse dynamics by the Newton-Euler recursion (Luh, Walker and Paul, J. Dyn. Sys. Meas. Control
@@ -46,7 +46,7 @@ from jointfmu.quantity import (
 
 from .system_joint import load_joint_file
 
-UNCOUPLED_NOTE = (
+UNCOUPLED_AXES_NOTE = (
     "The axes are not coupled: tip errors are right within 1 %, but the oscillation of the shipped arm after "
     "its motion is too small by factors up to 60 (wrist). The one FMU of the system has the coupled dynamics."
 )
@@ -73,55 +73,64 @@ class Link(CheckedParameters):
 class Arm:
     """Serial arm and its motion: all axes rotate from zero to their travel, by a quintic from rest to rest.
 
-    axis_names    : names of the axes, starting at the ground
-    rotation_axes : direction of each axis, a key of AXIS_VECTORS
-    links         : link behind each axis
-    start         : start time of the motion [s]
-    duration      : duration of the motion [s]
+    axis_names      : names of the axes, starting at the ground
+    rotation_axes   : direction of each axis, a key of AXIS_VECTORS
+    links           : link behind each axis
+    motion_start    : start time of the motion [s]
+    motion_duration : duration of the motion [s]
     """
 
     axis_names: Sequence[str]
     rotation_axes: Sequence[str]
     links: Sequence[Link]
-    start: float
-    duration: float
+    motion_start: float
+    motion_duration: float
 
-    def compute_motion(self, time: ArrayLike) -> tuple[Array, Array, Array]:
+    def compute_motion(self, sample_times: ArrayLike) -> tuple[Array, Array, Array]:
         """Angles [rad], speeds [rad/s], accelerations [rad/s2] of all axes, shape (times, axes)."""
-        x = (np.asarray(time, dtype=np.float64)[:, None] - self.start) / self.duration
+        x = (np.asarray(sample_times, dtype=np.float64)[:, None] - self.motion_start) / self.motion_duration
         travel = np.array([link.travel for link in self.links])
         first, second = smooth_step_slopes(x)
-        return (travel * smooth_step(x), travel * first / self.duration, travel * second / self.duration**2)
+        return (
+            travel * smooth_step(x),
+            travel * first / self.motion_duration,
+            travel * second / self.motion_duration**2,
+        )
 
-    def compute_frames(self, q: Array) -> tuple[list[Array], list[Array], Array]:
+    def compute_frames(self, axis_angles: Array) -> tuple[list[Array], list[Array], Array]:
         """Kinematics at angles (n, axes) [rad].
 
         Returns the rotation matrix (n, 3, 3) of each link, the position (n, 3) [m] of each axis, and the
         position (n, 3) [m] of the tip.
         """
-        rotation, position = np.broadcast_to(np.eye(3), (len(q), 3, 3)), np.zeros((len(q), 3))
+        rotation, position = (
+            np.broadcast_to(np.eye(3), (len(axis_angles), 3, 3)),
+            np.zeros((len(axis_angles), 3)),
+        )
         rotations, positions = [], []
         for k, (axis, link) in enumerate(zip(self.rotation_axes, self.links, strict=True)):
-            rotation = rotation @ _rotation_matrices(axis, q[:, k])
+            rotation = rotation @ _rotation_matrices(axis, axis_angles[:, k])
             rotations.append(rotation)
             positions.append(position)
             position = position + link.length * rotation[:, :, 2]
         return rotations, positions, position
 
-    def tip_position(self, q: Array) -> Array:
+    def compute_tip_position(self, axis_angles: Array) -> Array:
         """Position (n, 3) [m] of the tip at angles (n, axes) [rad]."""
-        return self.compute_frames(q)[2]
+        return self.compute_frames(axis_angles)[2]
 
     def inverse_dynamics(
-        self, q: Array, speed: Array, acceleration: Array, gravity: float = GRAVITY
+        self, axis_angles: Array, axis_speeds: Array, axis_accelerations: Array, gravity: float = GRAVITY
     ) -> Array:
         """Inverse dynamics: torques (n, axes) [N.m] of the rigid arm for a motion, with inertia and weight.
 
-        q, speed, acceleration : (n, axes) [rad], [rad/s], [rad/s2]
-        gravity                : [m/s2]
+        axis_angles        : (n, axes) [rad]
+        axis_speeds        : (n, axes) [rad/s]
+        axis_accelerations : (n, axes) [rad/s2]
+        gravity            : acceleration of free fall [m/s2]
         """
-        rotations, positions, tip = self.compute_frames(q)
-        n = len(q)
+        rotations, positions, tip = self.compute_frames(axis_angles)
+        n = len(axis_angles)
         w, alpha = np.zeros((n, 3)), np.zeros((n, 3))
         a = np.broadcast_to(np.array([0.0, 0.0, gravity]), (n, 3))
         forces, moments, centres = [], [], []
@@ -130,14 +139,14 @@ class Arm:
                 lever = positions[k] - positions[k - 1]
                 a = a + np.cross(alpha, lever) + np.cross(w, np.cross(w, lever))
             axis_vector = rotations[k] @ AXIS_VECTORS[axis]
-            relative_speed = axis_vector * speed[:, k, None]
-            alpha = alpha + axis_vector * acceleration[:, k, None] + np.cross(w, relative_speed)
+            relative_speed = axis_vector * axis_speeds[:, k, None]
+            alpha = alpha + axis_vector * axis_accelerations[:, k, None] + np.cross(w, relative_speed)
             w = w + relative_speed
             centre = link.centre * rotations[k][:, :, 2]
             forces.append(link.mass * (a + np.cross(alpha, centre) + np.cross(w, np.cross(w, centre))))
             inertia = np.diag([link.J_across, link.J_across, link.J_along])
             inertia = rotations[k] @ inertia @ rotations[k].transpose(0, 2, 1)
-            moments.append(_multiply(inertia, alpha) + np.cross(w, _multiply(inertia, w)))
+            moments.append(_multiply_vectors(inertia, alpha) + np.cross(w, _multiply_vectors(inertia, w)))
             centres.append(centre)
         torques = np.empty((n, len(self.links)))
         force, moment, next_position = np.zeros((n, 3)), np.zeros((n, 3)), tip
@@ -148,26 +157,31 @@ class Arm:
             torques[:, k] = np.sum(moment * (rotations[k] @ AXIS_VECTORS[self.rotation_axes[k]]), axis=1)
         return torques
 
-    def axis_inertias(self, q: Array) -> Array:
+    def compute_axis_inertias(self, axis_angles: Array) -> Array:
         """Inertia (axes) [kg.m2] of the arm about each axis at angles q (axes) [rad], other axes locked."""
         count = len(self.links)
-        angles = np.broadcast_to(q, (count, count))
+        angles = np.broadcast_to(axis_angles, (count, count))
         return np.asarray(
             np.diag(self.inverse_dynamics(angles, np.zeros((count, count)), np.eye(count), 0.0))
         )
 
 
-def _rotation_matrices(axis: str, angle: Array) -> Array:
+def _rotation_matrices(axis_name: str, rotation_angles: Array) -> Array:
     """Rotation matrices (n, 3, 3) about an axis of AXIS_VECTORS by angles (n) [rad]."""
-    c, s, zero, one = np.cos(angle), np.sin(angle), np.zeros_like(angle), np.ones_like(angle)
+    c, s, zero, one = (
+        np.cos(rotation_angles),
+        np.sin(rotation_angles),
+        np.zeros_like(rotation_angles),
+        np.ones_like(rotation_angles),
+    )
     rows = {
         "y": [[c, zero, s], [zero, one, zero], [-s, zero, c]],
         "z": [[c, -s, zero], [s, c, zero], [zero, zero, one]],
-    }[axis]
+    }[axis_name]
     return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
 
 
-def _multiply(matrices: Array, vectors: Array) -> Array:
+def _multiply_vectors(matrices: Array, vectors: Array) -> Array:
     """Products (n, 3) of rotation matrices (n, 3, 3) and vectors (n, 3)."""
     return np.asarray((matrices @ vectors[:, :, None])[:, :, 0])
 
@@ -181,18 +195,18 @@ ComponentSections = dict[str, dict[str, object]]
 """{component: its section, as in a system file}."""
 
 
-def read_arm(path: Path, section: object) -> tuple[Arm, ComponentSections, list[tuple[str, str]]]:
+def read_arm(system_path: Path, arm_section: object) -> tuple[Arm, ComponentSections, list[tuple[str, str]]]:
     """Read the section [arm] of a system file: the arm, and sections and connections of its components.
 
     The components of an axis NAME are `NAME_motor`, `NAME_drive`, `NAME_link` and `NAME_load`.
 
     Raises ValueError with one line that names the entry and what is allowed.
     """
-    if not isinstance(section, Mapping):
-        raise ValueError(f"arm = {section!r}, expected a section [arm]")
-    motion = {key: value for key, value in section.items() if key in _MOTION_ENTRIES}
-    axes = {key: value for key, value in section.items() if key not in _MOTION_ENTRIES}
-    times, _, _ = read_entries(path, _MOTION_ENTRIES, motion)
+    if not isinstance(arm_section, Mapping):
+        raise ValueError(f"arm = {arm_section!r}, expected a section [arm]")
+    motion = {key: value for key, value in arm_section.items() if key in _MOTION_ENTRIES}
+    axes = {key: value for key, value in arm_section.items() if key not in _MOTION_ENTRIES}
+    times, _, _ = read_entries(system_path, _MOTION_ENTRIES, motion)
     for name, item in _MOTION_ENTRIES.items():
         if text := find_problem(name, times.get(name), item):
             raise ValueError(f"arm.{text}")
@@ -202,10 +216,12 @@ def read_arm(path: Path, section: object) -> tuple[Arm, ComponentSections, list[
             axis_name = axis_section.get("axis") if isinstance(axis_section, Mapping) else axis_section
             raise ValueError(f"arm.{name}.axis = {axis_name!r}, allowed are {', '.join(AXIS_VECTORS)}")
         try:
-            values, _, _ = read_entries(path, fields, {k: v for k, v in axis_section.items() if k in fields})
+            values, _, _ = read_entries(
+                system_path, fields, {k: v for k, v in axis_section.items() if k in fields}
+            )
             links.append(build_parameter_set(Link, values))
         except ValueError as error:
-            raise ValueError(f"arm.{name}: {str(error).removeprefix(f'{path}: ')}") from None
+            raise ValueError(f"arm.{name}: {str(error).removeprefix(f'{system_path}: ')}") from None
         drives[name] = {
             key: value for key, value in axis_section.items() if key not in fields and key != "axis"
         }
@@ -221,7 +237,7 @@ def read_arm(path: Path, section: object) -> tuple[Arm, ComponentSections, list[
     sections: ComponentSections = {}
     wires: list[tuple[str, str]] = []
     for name, drive in drives.items():
-        ratio = _find_gear_ratio(path, name, drive)
+        ratio = _find_gear_ratio(system_path, name, drive)
         sections |= _make_axis_sections(arm, name, drive, ratio)
         wires += [
             (f"{name}_motor", f"{name}_drive.flange1"),
@@ -231,54 +247,58 @@ def read_arm(path: Path, section: object) -> tuple[Arm, ComponentSections, list[
     return arm, sections, wires
 
 
-def _find_gear_ratio(path: Path, axis_name: str, drive: Mapping[str, object]) -> float:
+def _find_gear_ratio(system_path: Path, axis_name: str, drive_section: Mapping[str, object]) -> float:
     """Gear ratio of the drive of an axis: stated in its section, or by its parameter file."""
-    model = drive.get("model")
+    model = drive_section.get("model")
     if model not in MODELS or "ratio" not in MODELS[model].parameter_fields():
         models = [n for n, m in MODELS.items() if "ratio" in m.parameter_fields() and len(m.inputs) >= 4]
         raise ValueError(f"arm.{axis_name}.model = {model!r}, allowed are {', '.join(models)}")
-    entry = drive.get("ratio")
+    entry = drive_section.get("ratio")
     if isinstance(entry, Mapping) and isinstance(entry.get("value"), int | float):
         return float(entry["value"])
     joint = MODELS[model].joint
-    file = load_joint_file(path.parent, f"arm.{axis_name}", joint, drive) or load_default(joint)
+    file = load_joint_file(system_path.parent, f"arm.{axis_name}", joint, drive_section) or load_default(
+        joint
+    )
     return float(file.values_by_name["ratio"])
 
 
 def _make_axis_sections(
-    arm: Arm, axis_name: str, drive: Mapping[str, object], speed_ratio: float
+    arm: Arm, axis_name: str, drive_section: Mapping[str, object], gear_ratio: float
 ) -> ComponentSections:
     """Make the sections of a system file for the components of one axis of the arm."""
     k = arm.axis_names.index(axis_name)
     link = arm.links[k]
     end = np.array([[link.travel for link in arm.links]])
-    inertia = float(arm.axis_inertias(end[0])[k])
+    inertia = float(arm.compute_axis_inertias(end[0])[k])
     phase = np.linspace(0.0, 1.0, 201)
-    q, speed, acceleration = arm.compute_motion(arm.start + arm.duration * phase)
+    q, speed, acceleration = arm.compute_motion(arm.motion_start + arm.motion_duration * phase)
     load = inertia * acceleration[:, k] - arm.inverse_dynamics(q, speed, acceleration)[:, k]
     points = TorqueCurve.fit_control_points(phase, load)  # digits beyond 1e-8 N.m depend on the processor
-    times = {"start": (arm.start, "s"), "duration": (arm.duration, "s")}
+    times = {"start": (arm.motion_start, "s"), "duration": (arm.motion_duration, "s")}
     return {
-        f"{axis_name}_motor": _make_section(
-            "AngleProfile", times | {"height": (speed_ratio * link.travel, "rad")}
+        f"{axis_name}_motor": _make_component_section(
+            "AngleProfile", times | {"height": (gear_ratio * link.travel, "rad")}
         ),
-        f"{axis_name}_drive": dict(drive),
-        f"{axis_name}_link": _make_section(
+        f"{axis_name}_drive": dict(drive_section),
+        f"{axis_name}_link": _make_component_section(
             "RotationalInertia", {"J": (inertia, "kg.m2"), "m": (0.0, "kg"), "l": (0.0, "m")}
         ),
-        f"{axis_name}_load": _make_section(
+        f"{axis_name}_load": _make_component_section(
             "TorqueCurve", times | {key: (round(value, 8) + 0.0, "N.m") for key, value in points.items()}
         ),
     }
 
 
-def _make_section(model: str, derived_values: Mapping[str, tuple[float, str]]) -> dict[str, object]:
+def _make_component_section(
+    model_name: str, derived_values: Mapping[str, tuple[float, str]]
+) -> dict[str, object]:
     """Make the section of a system file for a component with derived values.
 
     derived_values : {name: (value, unit)}
     """
     source = "kinematics and inverse dynamics of [arm]"
-    return {"model": model} | {
+    return {"model": model_name} | {
         name: {"value": value, "unit": unit, "kind": "derived", "source": source}
         for name, (value, unit) in derived_values.items()
     }

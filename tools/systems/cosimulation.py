@@ -12,7 +12,7 @@ from jointfmu.quantity import Array
 from .fit.compiled_system import CompiledSystem
 from .fmu.assembly import assemble_system
 from .master import Slave
-from .ssp import MASTERS, MasterKind, find_fmu_names, list_values
+from .ssp import MASTER_KINDS, MasterKind, find_fmu_names, list_archive_values
 from .system import System, load_systems
 from .wiring import find_lag_parameters, find_signals
 
@@ -20,25 +20,25 @@ from .wiring import find_lag_parameters, find_signals
 def simulate_system(
     system: System,
     fmu_folder: Path,
-    master: MasterKind = MASTERS[0],
+    master_kind: MasterKind = MASTER_KINDS[0],
     communication_step: float | None = None,
-    stop: float | None = None,
+    stop_time: float | None = None,
 ) -> dict[str, Array]:
     """Simulate a system; returns {COMPONENT.OUTPUT: values} of all connected outputs, and `time` [s].
 
     fmu_folder         : folder of the FMUs (FMI 2.0)
-    master             : parallel (all components step together) or sequential (joints step after the bodies)
+    master_kind        : parallel (all components step together) or sequential (joints step after the bodies)
     communication_step : communication step [s]; None: interval of the system
-    stop               : stop time [s]; None: stop time of the system
+    stop_time          : stop time [s]; None: stop time of the system
 
     Raises ValueError if an FMU is missing or returns an error.
     """
-    communication_step = system.interval if communication_step is None else communication_step
-    count = round((system.stop_time if stop is None else stop) / communication_step)
+    communication_step = system.output_interval if communication_step is None else communication_step
+    count = round((system.stop_time if stop_time is None else stop_time) / communication_step)
     signals, names, lag_parameters = find_signals(system), find_fmu_names(system), find_lag_parameters(system)
     inputs = {name: [w for w in signals if w.target_component == name] for name in system.components}
     outputs_read = {
-        name: list(dict.fromkeys(w.output for w in signals if w.source_component == name))
+        name: list(dict.fromkeys(w.source_output for w in signals if w.source_component == name))
         for name in system.components
     }
     columns = [f"{name}.{output}" for name in outputs_read for output in outputs_read[name]]
@@ -47,15 +47,16 @@ def simulate_system(
     with ExitStack() as stack:
         slaves: dict[str, Slave] = {}
         for name, component in system.components.items():
-            start = {key: entry.value for key, entry in list_values(component).items()}
-            start |= dict.fromkeys(lag_parameters.get(name, ()), master.force_lag)
+            start = {key: entry.parameter_value for key, entry in list_archive_values(component).items()}
+            start |= dict.fromkeys(lag_parameters.get(name, ()), master_kind.force_lag_steps)
             path = fmu_folder / f"{names[name]}.fmu"
-            input_names = [w.input for w in inputs[name]]
+            input_names = [w.target_input for w in inputs[name]]
             slaves[name] = stack.enter_context(Slave(path, start, input_names, outputs_read[name]))
         joints = [name for name, component in system.components.items() if component.parameter_file]
         others = [name for name in slaves if name not in joints]
         sources = {
-            name: [position[f"{w.source_component}.{w.output}"] for w in inputs[name]] for name in slaves
+            name: [position[f"{w.source_component}.{w.source_output}"] for w in inputs[name]]
+            for name in slaves
         }
         ends = dict(zip(outputs_read, accumulate(map(len, outputs_read.values())), strict=True))
         spans = {name: slice(ends[name] - len(outputs), ends[name]) for name, outputs in outputs_read.items()}
@@ -75,7 +76,7 @@ def simulate_system(
         set_inputs(joints)
         get_outputs(joints)
         rows[0] = current
-        groups = [others, joints] if master.is_sequential else [[*others, *joints]]
+        groups = [others, joints] if master_kind.is_sequential else [[*others, *joints]]
         for k in track_progress(range(count), f"run {system.name}", count):
             for group in groups:
                 set_inputs(group)
@@ -88,7 +89,7 @@ def simulate_system(
 
 
 def simulate_arm(system: System) -> dict[str, Array]:
-    """Simulate an arm with coupled links, by the equations of its one FMU, compiled for this machine.
+    """Simulate an arm with coupled links by the compiled equations of the system's FMU.
 
     Returns {COMPONENT.OUTPUT: values} of all connected outputs except loads, position of the tip `tip.x`,
     `tip.y`, `tip.z` [m], and `time` [s].
@@ -98,10 +99,14 @@ def simulate_arm(system: System) -> dict[str, Array]:
     compiled = CompiledSystem(assemble_system(system))
     loads = {f"{name}_load" for name in system.arm.axis_names}
     names = dict.fromkeys(
-        f"{s.source_component}.{s.output}" for s in find_signals(system) if s.source_component not in loads
+        f"{s.source_component}.{s.source_output}"
+        for s in find_signals(system)
+        if s.source_component not in loads
     )
     names |= dict.fromkeys(f"tip.{x}" for x in "xyz")
-    time = system.interval * np.arange(round(system.stop_time / system.interval) + 1, dtype=np.float64)
+    time = system.output_interval * np.arange(
+        round(system.stop_time / system.output_interval) + 1, dtype=np.float64
+    )
     rows = compiled.simulate({}, time, {}, [*names])
     return {"time": time} | dict(zip(names, rows.T, strict=True))
 

@@ -15,12 +15,12 @@ from jointfmu.quantity import Array
 from ..inputs.fitting import decay
 from ..inputs.fitting.hysteresis import HysteresisLaw
 from ..run.ramps import loops
-from .master import Slave, simulate_motion
+from .master import Slave, simulate_body_on_joint
 from .ringing import STEPS_PER_PERIOD, VibratingJoint, VibrationTest, WorkingPoint, find_vibrating_joints
 
-PERIOD_COUNT = 60
+SIMULATED_PERIOD_COUNT = 60
 """Number of periods of a simulated decay [1]."""
-FINAL_PERIODS = 10
+FINAL_POSITION_PERIOD_COUNT = 10
 """Number of last periods [1], whose mean is the final position; friction shifts it from the working point."""
 MAX_HALF_CYCLE_DECREMENT_OVER_DAMPING_RATIO = 2.0
 """Upper bound of the half-cycle decrement over the damping ratio [1].
@@ -34,40 +34,40 @@ DAMPING_TOLERANCE = 2e-2
 
 The damping is not compared in the first window, whose two periods take half of the amplitude.
 """
-MIN_OVER_INITIAL_AMPLITUDE = 0.01
+MIN_EVALUATED_OVER_INITIAL_AMPLITUDE = 0.01
 """Amplitude over the initial amplitude of a decay [1], below which the decay is not evaluated."""
 
 
 @dataclass(frozen=True, slots=True)
-class Decay:
+class FreeDecay:
     """Simulated free decay of a body on a joint about one working point.
 
-    load               : load on the joint, in SI units
-    amplitude          : (n) [m or rad], decreasing
-    frequency          : (n) angular frequency [rad/s] at these amplitudes
-    damping            : (n) damping ratio [1] at these amplitudes
-    expected_frequency : (n) angular frequency [rad/s] by the energy of the joint's loops about the final
+    joint_load            : load on the joint, in SI units
+    amplitude             : (n) [m or rad], decreasing
+    frequency             : (n) angular frequency [rad/s] at these amplitudes
+    damping               : (n) damping ratio [1] at these amplitudes
+    expected_frequency    : (n) angular frequency [rad/s] by the energy of the joint's loops about the final
         position
-    expected_damping   : (n) damping ratio [1] by the same loops, with viscous damping
-    half_eta_loop      : (n) half of the joint's output eta_loop [1]; None: the joint has no such output
-    time               : [s]
-    signal             : deflection from the working point [m or rad]
-    messages           : log messages of the FMUs
+    expected_damping      : (n) damping ratio [1] by the same loops, with viscous damping
+    half_loop_loss_factor : (n) half of the joint's output eta_loop [1]; None: the joint has no such output
+    time                  : [s]
+    deflection            : deflection from the working point [m or rad]
+    log_messages          : log messages of the FMUs
     """
 
-    load: float
+    joint_load: float
     amplitude: Array
     frequency: Array
     damping: Array
     expected_frequency: Array
     expected_damping: Array
-    half_eta_loop: Array | None
+    half_loop_loss_factor: Array | None
     time: Array
-    signal: Array
-    messages: tuple[str, ...]
+    deflection: Array
+    log_messages: tuple[str, ...]
 
 
-def simulate_example_decays(fmu_folder: Path) -> dict[str, list[Decay]]:
+def simulate_example_decays(fmu_folder: Path) -> dict[str, list[FreeDecay]]:
     """Simulate free vibrations that decay by slip, for all shipped systems with one vibrating joint.
 
     Returns the simulated vibrations by the name of the system.
@@ -79,57 +79,64 @@ def simulate_example_decays(fmu_folder: Path) -> dict[str, list[Decay]]:
         for name, joint in find_vibrating_joints().items()
     ]
     return {
-        name: simulate_decays(joint, fmu_folder, pull.deflection, [pull.load]) for name, joint, pull in pulls
+        name: simulate_decays(joint, fmu_folder, pull.deflection, [pull.joint_load])
+        for name, joint, pull in pulls
     }
 
 
 def simulate_decays(
-    joint: VibratingJoint,
+    vibrating_joint: VibratingJoint,
     fmu_folder: Path,
     initial_deflection: float,
-    loads: Sequence[float] | None = None,
+    joint_loads: Sequence[float] | None = None,
     inertia: float | None = None,
-    settings: Mapping[str, object] | None = None,
-) -> list[Decay]:
+    joint_parameters: Mapping[str, object] | None = None,
+) -> list[FreeDecay]:
     """Simulate free decays of the body of a system on its joint, one for each load.
 
     fmu_folder         : folder of the FMUs (FMI 2.0) of joint and body
     initial_deflection : [m or rad] from the working point
-    loads              : loads in SI units; None: the largest example load of the joint
+    joint_loads        : loads in SI units; None: the largest example load of the joint
     inertia            : [kg.m2 or kg] of the body; None: inertia in the system
-    settings           : parameters of the joint that replace those of the system
+    joint_parameters   : parameters of the joint that replace those of the system
 
     Raises ValueError if an FMU is missing or returns an error, or if too few periods can be resolved.
     """
-    parameters = {**joint.parameters, **(settings or {})}
-    loads = (
-        [max(joint.vibration_test.find_example_loads(fmu_folder / f"{joint.fmu_name}.fmu", parameters))]
-        if loads is None
-        else loads
+    parameters = {**vibrating_joint.parameters, **(joint_parameters or {})}
+    joint_loads = (
+        [
+            max(
+                vibrating_joint.vibration_test.find_example_loads(
+                    fmu_folder / f"{vibrating_joint.fmu_name}.fmu", parameters
+                )
+            )
+        ]
+        if joint_loads is None
+        else joint_loads
     )
-    inertia = joint.inertia if inertia is None else inertia
+    inertia = vibrating_joint.inertia if inertia is None else inertia
     return [
-        _simulate_decay(joint, fmu_folder, load, parameters, inertia, initial_deflection)
-        for load in track_progress(loads, "ring", len(loads))
+        _simulate_decay(vibrating_joint, fmu_folder, load, parameters, inertia, initial_deflection)
+        for load in track_progress(joint_loads, "ring", len(joint_loads))
     ]
 
 
 def _simulate_decay(
-    joint: VibratingJoint,
+    vibrating_joint: VibratingJoint,
     fmu_folder: Path,
-    load: float,
-    parameters: Mapping[str, Any],
+    joint_load: float,
+    joint_parameters: Mapping[str, Any],
     inertia: float,
     initial_deflection: float,
-) -> Decay:
+) -> FreeDecay:
     """Simulate the free decay at one load, and compute frequency and damping by the joint's loops."""
-    body, path = joint.vibration_test, fmu_folder / f"{joint.fmu_name}.fmu"
-    rest, partner = body.find_working_point(path, load, parameters), PARTNERS[body.body_model]
+    body, path = vibrating_joint.vibration_test, fmu_folder / f"{vibrating_joint.fmu_name}.fmu"
+    rest, partner = body.find_working_point(path, joint_load, joint_parameters), PARTNERS[body.body_model]
     states = [v.name for v in partner.outputs[: partner.state_count]]
     # away from zero: monotonic loading, as the FMU starts at zero
     pulled = rest.position + np.copysign(initial_deflection, rest.position)
-    start = {joint.inertia_parameter: inertia, states[0]: pulled}
-    settings = {**parameters, **body.find_start_values(load)}
+    start = {vibrating_joint.inertia_parameter: inertia, states[0]: pulled}
+    settings = {**joint_parameters, **body.find_start_values(joint_load)}
     step = 2.0 * np.pi / np.sqrt(rest.stiffness / inertia) / STEPS_PER_PERIOD
     with (
         Slave(
@@ -140,71 +147,74 @@ def _simulate_decay(
         ) as moving,
     ):
         signal = (
-            simulate_motion(slave, moving, rest.force, step, PERIOD_COUNT * STEPS_PER_PERIOD)[:, 0]
+            simulate_body_on_joint(
+                slave, moving, rest.force, step, SIMULATED_PERIOD_COUNT * STEPS_PER_PERIOD
+            )[:, 0]
             - rest.position
         )
-        messages = tuple(dict.fromkeys(slave.messages + moving.messages))
+        messages = tuple(dict.fromkeys(slave.log_messages + moving.log_messages))
     time = np.asarray(step * np.arange(signal.size), dtype=np.float64)
-    points = decay.analyse_decay(time, signal, f"load = {load:g}: ")
-    is_resolved = points.amplitude > MIN_OVER_INITIAL_AMPLITUDE * initial_deflection
-    amplitude = points.amplitude[is_resolved]
+    points = decay.analyse_decay(time, signal, f"load = {joint_load:g}: ")
+    is_resolved = points.motion_amplitude > MIN_EVALUATED_OVER_INITIAL_AMPLITUDE * initial_deflection
+    amplitude = points.motion_amplitude[is_resolved]
     loop_amplitudes = amplitude * np.exp(
         MAX_HALF_CYCLE_DECREMENT_OVER_DAMPING_RATIO * points.damping_ratio[is_resolved]
     )
     settled = rest._replace(
-        position=rest.position + float(np.mean(signal[-FINAL_PERIODS * STEPS_PER_PERIOD :]))
+        position=rest.position + float(np.mean(signal[-FINAL_POSITION_PERIOD_COUNT * STEPS_PER_PERIOD :]))
     )
     expected, stated, law = _evaluate_loops(
         path, settings, body, settled, inertia, amplitude, loop_amplitudes
     )
     frequency = 2.0 * np.pi * points.frequency[is_resolved]
     damping = points.damping_ratio[is_resolved]
-    return Decay(load, amplitude, frequency, damping, expected, stated, law, time, signal, messages)
+    return FreeDecay(joint_load, amplitude, frequency, damping, expected, stated, law, time, signal, messages)
 
 
 def _evaluate_loops(
     fmu_path: Path,
-    settings: Mapping[str, object],
+    joint_parameters: Mapping[str, object],
     vibration_test: VibrationTest,
     working_point: WorkingPoint,
     inertia: float,
-    amplitudes: Array,
+    evaluated_amplitudes: Array,
     loop_amplitudes: Array,
 ) -> tuple[Array, Array, Array | None]:
     """Frequency (n) [rad/s] and damping ratio (n) [1] of a body by the energy of the joint's loops.
 
     Returns also half of the output `eta_loop` (n) [1].
 
-    amplitudes      : (n) [m or rad] at which the loops are evaluated
-    loop_amplitudes : (n) [m or rad] of the simulated loops, a little larger
+    evaluated_amplitudes : (n) [m or rad] at which the loops are evaluated
+    loop_amplitudes      : (n) [m or rad] of the simulated loops, a little larger
     """
-    swing = loops.CyclicPath(centre=working_point.position, shape="sine", cycles=1)
+    swing = loops.CyclicInputPath(centre_value=working_point.position, waveform="sine", cycle_count=1)
     run = loops.run_loops(
         fmu_path,
         vibration_test.motion_inputs[0],
         loop_amplitudes.tolist(),
         swing,
         vibration_test.force_output,
-        settings,
+        joint_parameters,
     )
     results = [
         fit_masing_law(loop, working_point.damping).free_decay(np.array([a]), inertia)
-        for loop, a in zip(run.loops, amplitudes, strict=True)
+        for loop, a in zip(run.loops, evaluated_amplitudes, strict=True)
     ]
     frequency, decrement = np.array(results)[:, :, 0].T
-    deflection = np.abs(run.loops[0].motion - working_point.position)
-    eta = run.loops[0].result.columns.get("eta_loop")
-    first = slice(None, swing.points // 4 + 1)
-    law = None if eta is None else 0.5 * np.interp(amplitudes, deflection[first], eta[first])
+    deflection = np.abs(run.loops[0].displacements - working_point.position)
+    eta = run.loops[0].path_result.variable_columns.get("eta_loop")
+    first = slice(None, swing.points_per_cycle // 4 + 1)
+    law = None if eta is None else 0.5 * np.interp(evaluated_amplitudes, deflection[first], eta[first])
     return frequency, decrement / np.hypot(np.pi, decrement), law
 
 
-def fit_masing_law(loop: loops.HysteresisLoop, viscous_damping: float) -> HysteresisLaw:
-    """Fit a hysteresis law that follows Masing's rule to a simulated loop.
+def fit_masing_law(hysteresis_loop: loops.HysteresisLoop, viscous_damping: float) -> HysteresisLaw:
+    """Fit a hysteresis law that follows Masing's rule to a simulated hysteresis loop.
 
-    Its branch is the mean of both branches of the loop.
+    The branch of the law is the mean of the rising and the falling branch of the loop.
     """
-    motion, force = loop.motion[loop.cycle_start :], loop.force[loop.cycle_start :]
+    motion = hysteresis_loop.displacements[hysteresis_loop.last_cycle_start_index :]
+    force = hysteresis_loop.forces[hysteresis_loop.last_cycle_start_index :]
     half = motion.size // 2
     falling, rising = slice(None, half + 1), slice(half, None)
     deflection = 0.5 * (motion[0] - motion[falling])

@@ -21,7 +21,7 @@ Vector = list[Number]
 """Spatial vector or vector: list of Numbers."""
 Matrix = list[Vector]
 """Matrix: list of rows."""
-GROUND = -1
+GROUND_INDEX = -1
 """Index of the parent of a link that is connected to the ground."""
 
 
@@ -32,29 +32,29 @@ class Link:
     The frame of a link has its z axis along the joint axis. A hinge rotates the frame about z, a slide moves
     it along z. All arrays are in the frame of the link unless stated otherwise.
 
-    name             : name of the joint
-    parent           : index of the parent link, smaller than the own index; GROUND: the ground
-    is_slide         : whether the joint is a slide; otherwise a hinge
-    rotation, origin : axes (columns of a (3, 3) matrix) and origin (3) [m] of the frame, in the frame of the
-        parent, at joint position zero
-    mass             : [kg] of the link, with all bodies fixed to it
-    centre           : (3) [m] centre of mass
-    inertia          : (3, 3) [kg.m2] about the centre of mass
-    armature         : [kg.m2 or kg] inertia of a rigidly connected motor, reflected to the joint
-    damping          : [N.m.s/rad or N.s/m] viscous damping of the joint
-    stiffness        : [N.m/rad or N/m] of a spring in the joint
-    spring_position  : [rad or m] joint position at which this spring is relaxed
+    name                    : name of the joint
+    parent_index            : index of the parent link, smaller than the own index; or GROUND_INDEX
+    is_sliding_joint        : whether the joint is a slide; otherwise a hinge
+    rotation, origin        : axes (columns of a (3, 3) matrix) and origin (3) [m] of the frame, in the
+        frame of the parent, at joint position zero
+    mass                    : [kg] of the link, with all bodies fixed to it
+    centre_of_mass          : (3) [m] centre of mass
+    inertia                 : (3, 3) [kg.m2] about the centre of mass
+    reflected_motor_inertia : [kg.m2 or kg] inertia of a rigidly connected motor, reflected to the joint
+    damping                 : [N.m.s/rad or N.s/m] viscous damping of the joint
+    stiffness               : [N.m/rad or N/m] of a spring in the joint
+    spring_position         : [rad or m] joint position at which this spring is relaxed
     """
 
     name: str
-    parent: int
-    is_slide: bool
+    parent_index: int
+    is_sliding_joint: bool
     rotation: Array
     origin: Array
     mass: float
-    centre: Array
+    centre_of_mass: Array
     inertia: Array
-    armature: float = 0.0
+    reflected_motor_inertia: float = 0.0
     damping: float = 0.0
     stiffness: float = 0.0
     spring_position: float = 0.0
@@ -62,30 +62,31 @@ class Link:
     @property
     def axis_index(self) -> int:
         """Index of the joint axis in spatial vectors: rotation about z, or translation along z."""
-        return 5 if self.is_slide else 2
+        return 5 if self.is_sliding_joint else 2
 
 
 @dataclass(frozen=True, slots=True)
 class Frame:
     """Frame fixed to a link: axes (columns of `rotation`) and origin [m], both in the frame of the link."""
 
-    link: int
+    link_index: int
     rotation: Array
     origin: Array
 
 
 @dataclass(frozen=True, slots=True)
-class Body:
+class RigidBody:
     """Additional rigid body in a frame of a link.
 
-    mass    : [kg]
-    centre  : (3) [m] centre of mass
-    inertia : (3) [kg.m2] moments of inertia about axes through the centre of mass, parallel to the frame
+    mass           : [kg]
+    centre_of_mass : (3) [m] centre of mass
+    inertia        : (3) [kg.m2] moments of inertia about axes through the centre of mass, parallel to the
+        frame
     """
 
     frame: Frame
     mass: Number
-    centre: Sequence[Number]
+    centre_of_mass: Sequence[Number]
     inertia: Sequence[Number]
 
 
@@ -108,24 +109,25 @@ class Payload(CheckedParameters):
     )
 
     @classmethod
-    def at_origin(cls, mass: float) -> "Payload":
+    def make_point_mass(cls, mass: float) -> "Payload":
         """Point mass [kg] at the origin of the tip body."""
         return cls(m=mass, x=0.0, y=0.0, z=0.0, J_x=0.0, J_y=0.0, J_z=0.0)
 
-    def make_body(self, tip: Frame) -> Body:
+    def make_body(self, tip_frame: Frame) -> RigidBody:
         """The payload as a body in the frame of the tip."""
-        return Body(tip, self.m, (self.x, self.y, self.z), (self.J_x, self.J_y, self.J_z))
+        return RigidBody(tip_frame, self.m, (self.x, self.y, self.z), (self.J_x, self.J_y, self.J_z))
 
 
 @dataclass(frozen=True, slots=True)
 class RotorMotion:
-    """Motion of the rotor of a joint relative to the parent of the link.
+    """Motion of the motor rotor of a joint relative to the parent link, which carries the rotor.
 
     inertia      : [kg.m2] about its axis
     speed        : [rad/s]
     torque       : [N.m] on the rotor; None: the acceleration is prescribed
     acceleration : [rad/s2], prescribed
-    is_coupled   : whether the rotor acts on the parent by its spin; otherwise it rotates as in the ground
+    is_coupled   : whether the spin of the rotor acts on the parent; otherwise the rotor rotates as if its
+        axis were fixed to the ground
     """
 
     inertia: Number
@@ -139,14 +141,14 @@ class RotorMotion:
 class TreeMotion:
     """Results of the forward dynamics: accelerations and forces of all joints and rotors.
 
-    accelerations       : [rad/s2 or m/s2] of the joints
-    forces              : [N.m or N] on the joints: as given, or as the prescribed accelerations need them
+    joint_accelerations : [rad/s2 or m/s2] of the joints
+    joint_forces        : [N.m or N] on the joints: as given, or as the prescribed accelerations need them
     rotor_accelerations : [rad/s2] of the rotors, by joint
     rotor_torques       : [N.m] on the rotors: as given, or as the prescribed accelerations need them
     """
 
-    accelerations: list[Number]
-    forces: list[Number]
+    joint_accelerations: list[Number]
+    joint_forces: list[Number]
     rotor_accelerations: dict[str, Number]
     rotor_torques: dict[str, Number]
 
@@ -168,80 +170,91 @@ class FrameMotion:
 def forward_dynamics(
     links: Sequence[Link],
     gravity: Sequence[float],
-    positions: Sequence[Number],
-    speeds: Sequence[Number],
-    forces: Sequence[Number | None],
+    joint_positions: Sequence[Number],
+    joint_speeds: Sequence[Number],
+    joint_forces: Sequence[Number | None],
     prescribed_accelerations: Sequence[Number] | None = None,
-    rotors: Mapping[str, RotorMotion] | None = None,
-    payload: Body | None = None,
+    rotor_motions: Mapping[str, RotorMotion] | None = None,
+    payload: RigidBody | None = None,
 ) -> TreeMotion:
     """Accelerations of all joints and rotors.
 
     gravity                  : (3) [m/s2] acceleration of free fall, in the axes of the ground
-    positions, speeds        : of the joints [rad or m], [rad/s or m/s]
-    forces                   : [N.m or N] on each joint; None: its acceleration is prescribed
+    joint_positions          : [rad or m]
+    joint_speeds             : [rad/s or m/s]
+    joint_forces             : [N.m or N] on each joint; None: its acceleration is prescribed
     prescribed_accelerations : [rad/s2 or m/s2] of the joints without a force; None: zero
-    rotors                   : {joint: motion of its rotor}
+    rotor_motions            : {joint: motion of its rotor}
     """
-    rotors = rotors or {}
+    rotor_motions = rotor_motions or {}
     transforms, velocities, biases = list[tuple[Matrix, Matrix]](), list[Vector](), list[Vector]()
     inertias, bias_forces = list[Matrix](), list[Vector]()
     for i, link in enumerate(links):
-        moving, fixed = _joint_transform(link, positions[i]), _frame_transform(link)
-        relative = _unit_vector(link.axis_index, speeds[i])
+        moving, fixed = _joint_transform(link, joint_positions[i]), _frame_transform(link)
+        relative = _make_axis_vector(link.axis_index, joint_speeds[i])
         velocity = relative
-        if link.parent != GROUND:
-            carried = _multiply(moving, _multiply(fixed, velocities[link.parent]))
-            velocity = _add(carried, relative)
-        inertia = _spatial_inertia(link.mass, link.centre.tolist(), link.inertia.tolist())
-        if payload and payload.frame.link == i:
+        if link.parent_index != GROUND_INDEX:
+            carried = _multiply_matrix_vector(
+                moving, _multiply_matrix_vector(fixed, velocities[link.parent_index])
+            )
+            velocity = _add_vectors(carried, relative)
+        inertia = _spatial_inertia(link.mass, link.centre_of_mass.tolist(), link.inertia.tolist())
+        if payload and payload.frame.link_index == i:
             inertia = _add_matrices(inertia, _payload_inertia(payload))
         transforms.append((moving, fixed))
         velocities.append(velocity)
         biases.append(_cross_motion(velocity, relative))
         inertias.append(inertia)
-        bias_forces.append(_cross_force(velocity, _multiply(inertia, velocity)))
+        bias_forces.append(_cross_force(velocity, _multiply_matrix_vector(inertia, velocity)))
     for link in links:  # reactions of the rotors on the links that carry them
-        if link.name in rotors and rotors[link.name].is_coupled and link.parent != GROUND:
-            _add_rotor(inertias, bias_forces, velocities, link, rotors[link.name])
+        if (
+            link.name in rotor_motions
+            and rotor_motions[link.name].is_coupled
+            and link.parent_index != GROUND_INDEX
+        ):
+            _add_rotor_reaction(inertias, bias_forces, velocities, link, rotor_motions[link.name])
     count = len(links)
     columns: list[Vector] = [[]] * count
     pivots, remainders = [0.0] * count, [0.0] * count
     passive = [
         link.stiffness * (x - link.spring_position) + link.damping * v
-        for link, x, v in zip(links, positions, speeds, strict=True)
+        for link, x, v in zip(links, joint_positions, joint_speeds, strict=True)
     ]
     given = prescribed_accelerations or [0.0] * count
     for i in reversed(range(len(links))):
-        link, axis, force = links[i], links[i].axis_index, forces[i]
+        link, axis, force = links[i], links[i].axis_index, joint_forces[i]
         inertia, bias = inertias[i], biases[i]
         columns[i] = [row[axis] for row in inertia]
         if force is None:
-            bias = _add(bias, _unit_vector(axis, given[i]))
-            passed_inertia, passed_force = inertia, _add(bias_forces[i], _multiply(inertia, bias))
-        else:
-            pivots[i] = columns[i][axis] + link.armature
-            remainders[i] = force - passive[i] - bias_forces[i][axis]
-            passed_inertia = _subtract_outer(inertia, columns[i], pivots[i])
-            ratio = remainders[i] / pivots[i]
-            passed_force = _add(
-                _add(bias_forces[i], _multiply(passed_inertia, bias)), [u * ratio for u in columns[i]]
+            bias = _add_vectors(bias, _make_axis_vector(axis, given[i]))
+            passed_inertia, passed_force = (
+                inertia,
+                _add_vectors(bias_forces[i], _multiply_matrix_vector(inertia, bias)),
             )
-        if link.parent != GROUND:
+        else:
+            pivots[i] = columns[i][axis] + link.reflected_motor_inertia
+            remainders[i] = force - passive[i] - bias_forces[i][axis]
+            passed_inertia = _subtract_outer_product(inertia, columns[i], pivots[i])
+            ratio = remainders[i] / pivots[i]
+            passed_force = _add_vectors(
+                _add_vectors(bias_forces[i], _multiply_matrix_vector(passed_inertia, bias)),
+                [u * ratio for u in columns[i]],
+            )
+        if link.parent_index != GROUND_INDEX:
             for transform in transforms[i]:
-                passed_inertia = _congruence(transform, passed_inertia)
-                passed_force = _multiply(_transpose(transform), passed_force)
-            inertias[link.parent] = _add_matrices(inertias[link.parent], passed_inertia)
-            bias_forces[link.parent] = _add(bias_forces[link.parent], passed_force)
+                passed_inertia = _transform_spatial_inertia(transform, passed_inertia)
+                passed_force = _multiply_matrix_vector(_transpose(transform), passed_force)
+            inertias[link.parent_index] = _add_matrices(inertias[link.parent_index], passed_inertia)
+            bias_forces[link.parent_index] = _add_vectors(bias_forces[link.parent_index], passed_force)
     ground: Vector = [0.0, 0.0, 0.0, *(-float(g) for g in gravity)]
     spatial: list[Vector] = []
-    accelerations, forces = list[Number](), [*forces]
+    accelerations, joint_forces = list[Number](), [*joint_forces]
     rotor_accelerations, rotor_torques = dict[str, Number](), dict[str, Number]()
     for i, link in enumerate(links):
         moving, fixed = transforms[i]
-        parent = ground if link.parent == GROUND else spatial[link.parent]
-        if link.name in rotors:
-            rotor = rotors[link.name]
+        parent = ground if link.parent_index == GROUND_INDEX else spatial[link.parent_index]
+        if link.name in rotor_motions:
+            rotor = rotor_motions[link.name]
             spin = _carrier_angular_acceleration(link, parent, rotor)
             if rotor.torque is None:
                 rotor_accelerations[link.name] = rotor.acceleration
@@ -249,73 +262,93 @@ def forward_dynamics(
             else:
                 rotor_accelerations[link.name] = rotor.torque / rotor.inertia - spin
                 rotor_torques[link.name] = rotor.torque
-        carried = _add(_multiply(moving, _multiply(fixed, parent)), biases[i])
-        is_prescribed = forces[i] is None
-        acceleration = given[i] if is_prescribed else (remainders[i] - _dot(columns[i], carried)) / pivots[i]
-        spatial.append(_add(carried, _unit_vector(link.axis_index, acceleration)))
+        carried = _add_vectors(
+            _multiply_matrix_vector(moving, _multiply_matrix_vector(fixed, parent)), biases[i]
+        )
+        is_prescribed = joint_forces[i] is None
+        acceleration = (
+            given[i] if is_prescribed else (remainders[i] - _dot_product(columns[i], carried)) / pivots[i]
+        )
+        spatial.append(_add_vectors(carried, _make_axis_vector(link.axis_index, acceleration)))
         accelerations.append(acceleration)
         if is_prescribed:
-            needed = _dot(columns[i], spatial[i]) + bias_forces[i][link.axis_index]
-            forces[i] = needed + link.armature * acceleration + passive[i]
-    return TreeMotion(accelerations, forces, rotor_accelerations, rotor_torques)
+            needed = _dot_product(columns[i], spatial[i]) + bias_forces[i][link.axis_index]
+            joint_forces[i] = needed + link.reflected_motor_inertia * acceleration + passive[i]
+    return TreeMotion(accelerations, joint_forces, rotor_accelerations, rotor_torques)
 
 
-def frame_motion(
-    links: Sequence[Link], frame: Frame, positions: Sequence[Number], speeds: Sequence[Number]
+def compute_frame_motion(
+    links: Sequence[Link],
+    link_frame: Frame,
+    joint_positions: Sequence[Number],
+    joint_speeds: Sequence[Number],
 ) -> FrameMotion:
-    """Pose and velocity of a frame in the axes of the ground."""
-    position, rotation = frame.origin.tolist(), frame.rotation.tolist()
+    """Position, axes, velocity and angular velocity of a frame, in the axes of the ground."""
+    position, rotation = link_frame.origin.tolist(), link_frame.rotation.tolist()
     velocity: Vector = [0.0, 0.0, 0.0]
     angular_velocity: Vector = [0.0, 0.0, 0.0]
-    i = frame.link
-    while i != GROUND:  # from the frame to the ground, in the frame of each parent
-        link, axis = links[i], _unit_vector(2, speeds[i])[:3]
-        if link.is_slide:
-            velocity = _add(velocity, axis)
-            position = _add(position, _unit_vector(2, positions[i])[:3])
+    i = link_frame.link_index
+    while i != GROUND_INDEX:  # from the frame to the ground, in the frame of each parent
+        link, axis = links[i], _make_axis_vector(2, joint_speeds[i])[:3]
+        if link.is_sliding_joint:
+            velocity = _add_vectors(velocity, axis)
+            position = _add_vectors(position, _make_axis_vector(2, joint_positions[i])[:3])
             turned = link.rotation.tolist()
         else:
-            velocity = _add(velocity, _cross(axis, position))
-            angular_velocity = _add(angular_velocity, axis)
-            turned = _product(link.rotation.tolist(), _transpose(_z_rotation(positions[i])))
-        rotation = _product(turned, rotation)
-        position = _add(link.origin.tolist(), _multiply(turned, position))
-        velocity, angular_velocity = _multiply(turned, velocity), _multiply(turned, angular_velocity)
-        i = link.parent
+            velocity = _add_vectors(velocity, _cross_product(axis, position))
+            angular_velocity = _add_vectors(angular_velocity, axis)
+            turned = _multiply_matrices(
+                link.rotation.tolist(), _transpose(_z_rotation_matrix(joint_positions[i]))
+            )
+        rotation = _multiply_matrices(turned, rotation)
+        position = _add_vectors(link.origin.tolist(), _multiply_matrix_vector(turned, position))
+        velocity, angular_velocity = (
+            _multiply_matrix_vector(turned, velocity),
+            _multiply_matrix_vector(turned, angular_velocity),
+        )
+        i = link.parent_index
     return FrameMotion(position, rotation, velocity, angular_velocity)
 
 
-def _add_rotor(
-    inertias: list[Matrix],
+def _add_rotor_reaction(
+    link_inertias: list[Matrix],
     bias_forces: list[Vector],
-    velocities: Sequence[Vector],
+    link_velocities: Sequence[Vector],
     link: Link,
-    rotor: RotorMotion,
+    rotor_motion: RotorMotion,
 ) -> None:
     """Add the reaction of a rotor to the inertia and the bias force of the link that carries it."""
-    parent, axis = link.parent, link.rotation[:, 2].tolist()
-    gyroscopic = _cross(velocities[parent][:3], [rotor.inertia * rotor.speed * a for a in axis])
-    if rotor.torque is None:
-        reaction = rotor.inertia * rotor.acceleration
+    parent, axis = link.parent_index, link.rotation[:, 2].tolist()
+    gyroscopic = _cross_product(
+        link_velocities[parent][:3], [rotor_motion.inertia * rotor_motion.speed * a for a in axis]
+    )
+    if rotor_motion.torque is None:
+        reaction = rotor_motion.inertia * rotor_motion.acceleration
     else:
-        reaction = rotor.torque
-        removed = _subtract_outer([[0.0] * 3 for _ in axis], [rotor.inertia * a for a in axis], rotor.inertia)
-        inertias[parent] = _add_matrices(inertias[parent], _pad(removed))
-    moment = _add(gyroscopic, [reaction * a for a in axis])
-    bias_forces[parent] = _add(bias_forces[parent], [*moment, 0.0, 0.0, 0.0])
+        reaction = rotor_motion.torque
+        removed = _subtract_outer_product(
+            [[0.0] * 3 for _ in axis], [rotor_motion.inertia * a for a in axis], rotor_motion.inertia
+        )
+        link_inertias[parent] = _add_matrices(link_inertias[parent], _pad_to_spatial_matrix(removed))
+    moment = _add_vectors(gyroscopic, [reaction * a for a in axis])
+    bias_forces[parent] = _add_vectors(bias_forces[parent], [*moment, 0.0, 0.0, 0.0])
 
 
-def _carrier_angular_acceleration(link: Link, parent_acceleration: Vector, rotor: RotorMotion) -> Number:
+def _carrier_angular_acceleration(
+    link: Link, parent_acceleration: Vector, rotor_motion: RotorMotion
+) -> Number:
     """Angular acceleration [rad/s2] of the link that carries a rotor, about the axis of the rotor."""
-    if not rotor.is_coupled or link.parent == GROUND:
+    if not rotor_motion.is_coupled or link.parent_index == GROUND_INDEX:
         return 0.0
-    return _dot(link.rotation[:, 2].tolist(), parent_acceleration[:3])
+    return _dot_product(link.rotation[:, 2].tolist(), parent_acceleration[:3])
 
 
-def _spatial_inertia(mass: Number, centre: Sequence[Number], inertia: Sequence[Sequence[Number]]) -> Matrix:
+def _spatial_inertia(
+    mass: Number, centre_of_mass: Sequence[Number], inertia: Sequence[Sequence[Number]]
+) -> Matrix:
     """Spatial inertia (6, 6) about the origin; `inertia` (3, 3) is about the centre of mass."""
-    lever = _skew(centre)
-    steiner = _product(lever, _transpose(lever))
+    lever = _skew_matrix(centre_of_mass)
+    steiner = _multiply_matrices(lever, _transpose(lever))
     upper = [
         [
             *(inertia[r][c] + mass * steiner[r][c] for c in range(3)),
@@ -330,12 +363,14 @@ def _spatial_inertia(mass: Number, centre: Sequence[Number], inertia: Sequence[S
     return upper + lower
 
 
-def _payload_inertia(payload: Body) -> Matrix:
+def _payload_inertia(payload: RigidBody) -> Matrix:
     """Spatial inertia (6, 6) of a payload about the origin of the link that carries it."""
     axes = payload.frame.rotation.tolist()
-    centre = _add(payload.frame.origin.tolist(), _multiply(axes, list(payload.centre)))
+    centre = _add_vectors(
+        payload.frame.origin.tolist(), _multiply_matrix_vector(axes, list(payload.centre_of_mass))
+    )
     diagonal = [[x if r == c else 0.0 for c, x in enumerate(payload.inertia)] for r in range(3)]
-    inertia = _product(_product(axes, diagonal), _transpose(axes))
+    inertia = _multiply_matrices(_multiply_matrices(axes, diagonal), _transpose(axes))
     return _spatial_inertia(payload.mass, centre, inertia)
 
 
@@ -344,82 +379,91 @@ def _frame_transform(link: Link) -> Matrix:
     return _motion_transform(link.rotation.T.tolist(), link.origin.tolist())
 
 
-def _joint_transform(link: Link, position: Number) -> Matrix:
+def _joint_transform(link: Link, joint_position: Number) -> Matrix:
     """Transform (6, 6) of motion vectors by the motion of a joint from position zero."""
-    if link.is_slide:
-        return _motion_transform(np.eye(3).tolist(), [0.0, 0.0, position])
-    return _motion_transform(_z_rotation(position), [0.0, 0.0, 0.0])
+    if link.is_sliding_joint:
+        return _motion_transform(np.eye(3).tolist(), [0.0, 0.0, joint_position])
+    return _motion_transform(_z_rotation_matrix(joint_position), [0.0, 0.0, 0.0])
 
 
-def _motion_transform(rotation: Matrix, origin: Vector) -> Matrix:
+def _motion_transform(rotation_matrix: Matrix, frame_origin: Vector) -> Matrix:
     """Matrix (6, 6) that transforms spatial motion vectors to another frame.
 
-    rotation : (3, 3) maps components to the new frame; origin : (3) [m] of the new frame, in the old one
+    rotation_matrix : (3, 3) converts components from the old frame to the new frame
+    frame_origin    : (3) [m] origin of the new frame, in the old frame
     """
-    lower = _product(rotation, _skew(origin))
+    lower = _multiply_matrices(rotation_matrix, _skew_matrix(frame_origin))
     return [
-        *([*row, 0.0, 0.0, 0.0] for row in rotation),
-        *([*(-x for x in low), *row] for low, row in zip(lower, rotation, strict=True)),
+        *([*row, 0.0, 0.0, 0.0] for row in rotation_matrix),
+        *([*(-x for x in low), *row] for low, row in zip(lower, rotation_matrix, strict=True)),
     ]
 
 
-def _z_rotation(angle: Number) -> Matrix:
+def _z_rotation_matrix(rotation_angle: Number) -> Matrix:
     """Map (3, 3) of components to a frame that is rotated by an angle about z."""
-    c, s = np.cos(angle), np.sin(angle)
+    c, s = np.cos(rotation_angle), np.sin(rotation_angle)
     return [[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]]
 
 
-def _unit_vector(index: int, coordinate_count: Number) -> Vector:
-    """Unit vector along one coordinate of a number of coordinates."""
-    return [coordinate_count if k == index else 0.0 for k in range(6)]
+def _make_axis_vector(coordinate_index: int, component: Number) -> Vector:
+    """Spatial vector (6) whose only nonzero component is that of one coordinate."""
+    return [component if k == coordinate_index else 0.0 for k in range(6)]
 
 
-def _cross_motion(velocity: Vector, motion: Vector) -> Vector:
+def _cross_motion(spatial_velocity: Vector, motion_vector: Vector) -> Vector:
     """Spatial cross product of a velocity with a motion vector."""
-    w, v, a, b = velocity[:3], velocity[3:], motion[:3], motion[3:]
-    return [*_cross(w, a), *_add(_cross(v, a), _cross(w, b))]
+    w, v, a, b = spatial_velocity[:3], spatial_velocity[3:], motion_vector[:3], motion_vector[3:]
+    return [*_cross_product(w, a), *_add_vectors(_cross_product(v, a), _cross_product(w, b))]
 
 
-def _cross_force(velocity: Vector, force: Vector) -> Vector:
+def _cross_force(spatial_velocity: Vector, force_vector: Vector) -> Vector:
     """Spatial cross product of a velocity with a force vector."""
-    w, v, n, f = velocity[:3], velocity[3:], force[:3], force[3:]
-    return [*_add(_cross(w, n), _cross(v, f)), *_cross(w, f)]
+    w, v, n, f = spatial_velocity[:3], spatial_velocity[3:], force_vector[:3], force_vector[3:]
+    return [*_add_vectors(_cross_product(w, n), _cross_product(v, f)), *_cross_product(w, f)]
 
 
-def _cross(a: Sequence[Number], b: Sequence[Number]) -> Vector:
+def _cross_product(first_vector: Sequence[Number], second_vector: Sequence[Number]) -> Vector:
     """Cross product of two vectors (3)."""
-    return _multiply(_skew(a), list(b))
+    return _multiply_matrix_vector(_skew_matrix(first_vector), list(second_vector))
 
 
-def _skew(a: Sequence[Number]) -> Matrix:
-    """Matrix (3, 3) of the cross product with a vector."""
+def _skew_matrix(first_vector: Sequence[Number]) -> Matrix:
+    """Matrix (3, 3) of the cross product a x ... with a first vector a (3)."""
+    a = first_vector
     return [[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]]
 
 
-def _dot(a: Sequence[Number], b: Sequence[Number]) -> Number:
+def _dot_product(first_vector: Sequence[Number], second_vector: Sequence[Number]) -> Number:
     """Scalar product of two vectors; products with a constant zero are left out."""
-    terms = [x * y for x, y in zip(a, b, strict=True) if not (_is_zero(x) or _is_zero(y))]
+    terms = [
+        x * y
+        for x, y in zip(first_vector, second_vector, strict=True)
+        if not (_is_constant_zero(x) or _is_constant_zero(y))
+    ]
     return sum(terms[1:], terms[0]) if terms else 0.0
 
 
-def _is_zero(number: Number) -> bool:
-    """Whether a Number is a constant zero, not a symbol."""
+def _is_constant_zero(number: Number) -> bool:
+    """Whether a value is the number zero; False for a symbolic expression."""
     return isinstance(number, float) and number == 0.0
 
 
-def _add(a: Sequence[Number], b: Sequence[Number]) -> Vector:
+def _add_vectors(first_vector: Sequence[Number], second_vector: Sequence[Number]) -> Vector:
     """Sum of two vectors."""
-    return [y if _is_zero(x) else x if _is_zero(y) else x + y for x, y in zip(a, b, strict=True)]
+    return [
+        y if _is_constant_zero(x) else x if _is_constant_zero(y) else x + y
+        for x, y in zip(first_vector, second_vector, strict=True)
+    ]
 
 
-def _add_matrices(a: Matrix, b: Matrix) -> Matrix:
+def _add_matrices(first_matrix: Matrix, second_matrix: Matrix) -> Matrix:
     """Sum of two matrices."""
-    return [_add(x, y) for x, y in zip(a, b, strict=True)]
+    return [_add_vectors(x, y) for x, y in zip(first_matrix, second_matrix, strict=True)]
 
 
-def _multiply(matrix: Matrix, vector: Sequence[Number]) -> Vector:
+def _multiply_matrix_vector(matrix: Matrix, vector: Sequence[Number]) -> Vector:
     """Product of a matrix and a vector."""
-    return [_dot(row, vector) for row in matrix]
+    return [_dot_product(row, vector) for row in matrix]
 
 
 def _transpose(matrix: Matrix) -> Matrix:
@@ -427,32 +471,34 @@ def _transpose(matrix: Matrix) -> Matrix:
     return [list(row) for row in zip(*matrix, strict=True)]
 
 
-def _product(a: Matrix, b: Matrix) -> Matrix:
+def _multiply_matrices(left_matrix: Matrix, right_matrix: Matrix) -> Matrix:
     """Product of two matrices."""
-    columns = _transpose(b)
-    return [[_dot(row, column) for column in columns] for row in a]
+    columns = _transpose(right_matrix)
+    return [[_dot_product(row, column) for column in columns] for row in left_matrix]
 
 
-def _pad(block: Matrix) -> Matrix:
+def _pad_to_spatial_matrix(angular_block: Matrix) -> Matrix:
     """Spatial matrix (6, 6) with an angular block (3, 3), otherwise zero."""
-    return [*([*row, 0.0, 0.0, 0.0] for row in block), *([0.0] * 6 for _ in range(3))]
+    return [*([*row, 0.0, 0.0, 0.0] for row in angular_block), *([0.0] * 6 for _ in range(3))]
 
 
-def _congruence(transform: Matrix, inertia: Matrix) -> Matrix:
+def _transform_spatial_inertia(transform: Matrix, spatial_inertia: Matrix) -> Matrix:
     """Spatial inertia in another frame: transform^T inertia transform, symmetric."""
     columns = _transpose(transform)
-    products = _transpose(_product(inertia, transform))
-    return _mirror([[_dot(columns[r], products[c]) if c >= r else 0.0 for c in range(6)] for r in range(6)])
+    products = _transpose(_multiply_matrices(spatial_inertia, transform))
+    return _mirror_upper_triangle(
+        [[_dot_product(columns[r], products[c]) if c >= r else 0.0 for c in range(6)] for r in range(6)]
+    )
 
 
-def _subtract_outer(matrix: Matrix, column: Vector, pivot: Number) -> Matrix:
-    """Matrix minus the outer product of a column with itself over a pivot, symmetric."""
-    scaled = [0.0 if _is_zero(x) else x / pivot for x in column]
-    return _mirror(
+def _subtract_outer_product(matrix: Matrix, column: Vector, pivot: Number) -> Matrix:
+    """Symmetric matrix minus (column times its transpose)/pivot: elimination of one coordinate."""
+    scaled = [0.0 if _is_constant_zero(x) else x / pivot for x in column]
+    return _mirror_upper_triangle(
         [
             [
                 matrix[r][c]
-                if _is_zero(column[r]) or _is_zero(column[c])
+                if _is_constant_zero(column[r]) or _is_constant_zero(column[c])
                 else matrix[r][c] - column[r] * scaled[c]
                 if c >= r
                 else 0.0
@@ -463,6 +509,9 @@ def _subtract_outer(matrix: Matrix, column: Vector, pivot: Number) -> Matrix:
     )
 
 
-def _mirror(upper: Matrix) -> Matrix:
+def _mirror_upper_triangle(upper_triangle: Matrix) -> Matrix:
     """Symmetric matrix from its upper triangle."""
-    return [[upper[min(r, c)][max(r, c)] for c in range(len(upper))] for r in range(len(upper))]
+    return [
+        [upper_triangle[min(r, c)][max(r, c)] for c in range(len(upper_triangle))]
+        for r in range(len(upper_triangle))
+    ]

@@ -14,14 +14,14 @@ from jointfmu.progress import track_progress
 from jointfmu.quantity import Array, flatten_fields
 
 from ..common.joint_parts import load_tool_module
-from .master import Slave, damping_ratio, peak_frequency, simulate_motion
-from .ssp import find_fmu_names, list_values
+from .master import Slave, damping_ratio, find_peak_frequency, simulate_body_on_joint
+from .ssp import find_fmu_names, list_archive_values
 from .system import Component, System, load_systems
 from .wiring import find_signals
 
 STEPS_PER_PERIOD = 100
 """Number of communication steps per period of a vibration [1]."""
-PERIOD_COUNT = 25
+SIMULATED_PERIOD_COUNT = 25
 """Number of periods of a simulation [1]."""
 RESONANCE_TOLERANCE = 5e-3
 """Relative tolerance [1] of the spectral peak frequency against sqrt(K/J)."""
@@ -43,26 +43,26 @@ _MIN_DAMPING_RATIO = 1e-6
 class FreeVibration:
     """Simulated free vibration of a body on a joint about one working point.
 
-    load               : load on the joint, in SI units
+    joint_load         : load on the joint, in SI units
     inertia            : inertia or mass of the body [kg.m2 or kg]
     frequency          : angular frequency [rad/s] of the spectral peak of the simulated signal
-    expected_frequency : sqrt(K/J) [rad/s] with the tangent stiffness K of the joint at the working point
+    expected_frequency : sqrt(K/J) [rad/s]: K tangent stiffness of the joint at the working point, J inertia
     damping            : damping ratio [1] of the simulated decay
     expected_damping   : damping ratio [1] by the damping coefficient of the joint
     time               : [s]
-    signal             : deflection from the working point [rad or m]
-    messages           : log messages of the FMUs
+    deflection         : deflection from the working point [rad or m]
+    log_messages       : log messages of the FMUs
     """
 
-    load: float
+    joint_load: float
     inertia: float
     frequency: float
     expected_frequency: float
     damping: float
     expected_damping: float
     time: Array
-    signal: Array
-    messages: tuple[str, ...]
+    deflection: Array
+    log_messages: tuple[str, ...]
 
     @property
     def is_damped(self) -> bool:
@@ -70,13 +70,14 @@ class FreeVibration:
         return self.expected_damping > _MIN_DAMPING_RATIO
 
     @property
-    def list_deviations(self) -> list[str]:
+    def deviation_texts(self) -> list[str]:
         """Texts on deviations beyond the tolerances, one line each."""
         pairs = [("frequency", self.frequency, self.expected_frequency, RESONANCE_TOLERANCE)]
         if self.is_damped:
             pairs.append(("damping", self.damping, self.expected_damping, DAMPING_TOLERANCE))
         return [
-            f"load = {self.load:g}: {name} {simulated:.6g}, expected {expected:.6g} within {tolerance:g}"
+            f"load = {self.joint_load:g}: {name} {simulated:.6g}, expected {expected:.6g} within "
+            f"{tolerance:.2%}"
             for name, simulated, expected, tolerance in pairs
             if not abs(simulated - expected) <= tolerance * expected
         ]
@@ -100,22 +101,22 @@ class WorkingPoint(NamedTuple):
 class PlotAxis(NamedTuple):
     """Axis of a plot: name of the quantity, its unit, and the factor from SI to this unit."""
 
-    name: str
+    quantity_name: str
     unit: str
     display_factor: float
 
     @property
-    def label(self) -> str:
+    def axis_label(self) -> str:
         """Label of the axis: quantity and unit."""
-        return f"{self.name} [{self.unit}]"
+        return f"{self.quantity_name} [{self.unit}]"
 
 
 class SlipDeflection(NamedTuple):
     """Initial deflection of a body that makes its joint slip, with the load on the joint (SI units)."""
 
-    load: float
+    joint_load: float
     deflection: float
-    doc: str
+    description: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -136,7 +137,7 @@ class VibrationTest:
     deflection_axis         : plot axis of the deflection
     support_description     : how the body is held, for the report
     stiffness_output        : variable of the joint that is the stiffness for the motion of the body
-    deflection_for_slip         : initial deflection that makes the joint slip
+    deflection_for_slip     : initial deflection that makes the joint slip
     frictionless_parameters : {parameter: value} of the joint without friction, which adds stiffness at small
         amplitudes
     """
@@ -158,13 +159,14 @@ class VibrationTest:
     frictionless_parameters: Mapping[str, float] = field(default_factory=dict)
 
 
-def load_vibration_test(joint: str) -> VibrationTest:
+def load_vibration_test(joint_kind: str) -> VibrationTest:
     """Import the vibration test of a kind of joint; raises ValueError if the joint defines none."""
-    tool_module = load_tool_module(KINDS[joint], "ringing")
+    tool_module = load_tool_module(KINDS[joint_kind], "ringing")
     if tool_module is None:
         joints = [name for name, kind in KINDS.items() if load_tool_module(kind, "ringing")]
         raise ValueError(
-            f"joint {joint!r} has no free vibration that can be simulated; allowed are {', '.join(joints)}"
+            f"joint {joint_kind!r} has no free vibration that can be simulated; allowed are "
+            f"{', '.join(joints)}"
         )
     body: VibrationTest = tool_module.VIBRATION_TEST
     return body
@@ -195,12 +197,12 @@ class VibratingJoint:
         """
         if not self.joint.has_own_fmu:
             return self.joint.parameters
-        return {name: entry.value for name, entry in list_values(self.joint).items()}
+        return {name: entry.parameter_value for name, entry in list_archive_values(self.joint).items()}
 
     @property
     def inertia(self) -> float:
         """Inertia [kg.m2] or mass [kg] of the body."""
-        value = self.moving_body.values.get(self.inertia_parameter)
+        value = self.moving_body.stated_values.get(self.inertia_parameter)
         return float(
             partner_parameters(self.moving_body.model_name).values_by_name[self.inertia_parameter]
             if value is None
@@ -224,29 +226,30 @@ class VibratingJoint:
         return KINDS[self.joint.joint_kind].variables[self.vibration_test.load_variable].unit
 
 
-def find_vibrating_joint(system: System, joint: str | None = None) -> VibratingJoint:
+def find_vibrating_joint(system: System, joint_name: str | None = None) -> VibratingJoint:
     """Find a joint of a system and the body that vibrates on it.
 
-    joint : name of the joint; None: the only joint of the system
+    joint_name : name of the joint; None: the only joint of the system
 
     Raises ValueError if the system has no such joint or several, or if the joint has no vibration test.
     """
     joints = system.joints
-    if joint is None and len(joints) > 1:
-        raise ValueError(f"{system.name} has several joints, one must be named: {', '.join(joints)}")
-    name = next(iter(joints)) if joint is None else joint
+    if joint_name is None and len(joints) > 1:
+        raise ValueError(f"{system.name} has several joints; state one of {', '.join(joints)}")
+    name = next(iter(joints)) if joint_name is None else joint_name
     if name not in joints:
         raise ValueError(f"joint {name!r} is not in {system.name}, allowed are {', '.join(joints)}")
     body = load_vibration_test(joints[name].joint_kind)
     body_names = [
         w.source_component
         for w in find_signals(system)
-        if (w.target_component, w.input) == (name, body.motion_inputs[0])
+        if (w.target_component, w.target_input) == (name, body.motion_inputs[0])
     ]
     moving = system.components[body_names[0]] if body_names else None
     if joints[name].model_name != body.model_name or moving is None or moving.model_name != body.body_model:
         raise ValueError(
-            f"{name}: expected a {body.model_name} that gets {body.motion_inputs[0]} from a {body.body_model}"
+            f"{name}: expected a joint {body.model_name} with a {body.body_model} connected to "
+            f"{body.motion_inputs[0]}"
         )
     key = next(iter(dict(flatten_fields(PARTNERS[body.body_model].parameter_class))))
     return VibratingJoint(body, joints[name], find_fmu_names(system)[name], moving, key)
@@ -270,40 +273,42 @@ def find_vibrating_joints() -> dict[str, VibratingJoint]:
 
 
 def simulate_vibrations(
-    joint: VibratingJoint,
+    vibrating_joint: VibratingJoint,
     fmu_folder: Path,
-    loads: Sequence[float] | None = None,
+    joint_loads: Sequence[float] | None = None,
     inertia: float | None = None,
 ) -> list[FreeVibration]:
     """Simulate free vibrations of a body on its joint without friction, one for each load.
 
-    fmu_folder : folder of the FMUs (FMI 2.0) of joint and body
-    loads      : loads in SI units; None: the example loads of the joint
-    inertia    : [kg.m2 or kg] of the body; None: inertia in the system
+    fmu_folder  : folder of the FMUs (FMI 2.0) of joint and body
+    joint_loads : loads in SI units; None: the example loads of the joint
+    inertia     : [kg.m2 or kg] of the body; None: inertia in the system
 
     Raises ValueError if an FMU is missing or returns an error, or if there is no vibration.
     """
-    parameters = {**joint.parameters, **joint.vibration_test.frictionless_parameters}
-    if loads is None:
-        loads = joint.vibration_test.find_example_loads(fmu_folder / f"{joint.fmu_name}.fmu", parameters)
+    parameters = {**vibrating_joint.parameters, **vibrating_joint.vibration_test.frictionless_parameters}
+    if joint_loads is None:
+        joint_loads = vibrating_joint.vibration_test.find_example_loads(
+            fmu_folder / f"{vibrating_joint.fmu_name}.fmu", parameters
+        )
     if inertia is None:
-        inertia = joint.inertia
+        inertia = vibrating_joint.inertia
     return [
-        _simulate_vibration(joint, fmu_folder, load, parameters, inertia)
-        for load in track_progress(loads, "ring", len(loads))
+        _simulate_vibration(vibrating_joint, fmu_folder, load, parameters, inertia)
+        for load in track_progress(joint_loads, "ring", len(joint_loads))
     ]
 
 
-def frequency_curve(
+def compute_frequency_curve(
     vibrating_joint: VibratingJoint, fmu_folder: Path, vibrations: Sequence[FreeVibration]
 ) -> tuple[Array, Array]:
-    """Curve of the frequency sqrt(K/J) (n) [rad/s] over the load (n).
+    """Loads on the joint, and natural frequency sqrt(stiffness/inertia) [rad/s] of the body at each load.
 
     The loads are evenly spaced over the range of the simulated points.
     """
     joint = {**vibrating_joint.parameters, **vibrating_joint.vibration_test.frictionless_parameters}
     path = fmu_folder / f"{vibrating_joint.fmu_name}.fmu"
-    ends, inertia = [point.load for point in vibrations], vibrations[0].inertia
+    ends, inertia = [point.joint_load for point in vibrations], vibrations[0].inertia
     loads = np.linspace(min(ends), max(ends), FREQUENCY_CURVE_POINT_COUNT)
     stiffness = np.array(
         [
@@ -315,49 +320,58 @@ def frequency_curve(
 
 
 def _simulate_vibration(
-    joint: VibratingJoint, fmu_folder: Path, load: float, parameters: Mapping[str, Any], inertia: float
+    vibrating_joint: VibratingJoint,
+    fmu_folder: Path,
+    joint_load: float,
+    joint_parameters: Mapping[str, Any],
+    inertia: float,
 ) -> FreeVibration:
     """Simulate the free vibration at one load, with given parameters of the joint."""
-    body, path = joint.vibration_test, fmu_folder / f"{joint.fmu_name}.fmu"
-    rest, partner = body.find_working_point(path, load, parameters), PARTNERS[body.body_model]
+    body, path = vibrating_joint.vibration_test, fmu_folder / f"{vibrating_joint.fmu_name}.fmu"
+    rest, partner = body.find_working_point(path, joint_load, joint_parameters), PARTNERS[body.body_model]
     initial, smallest = (
         body.release_force / rest.stiffness,
         MIN_INITIAL_OVER_REST_DEFLECTION * abs(rest.position),
     )
     if not initial > smallest:
         raise ValueError(
-            f"load = {load:g}: too large, its deflection of {rest.position:g} hides a first one of "
-            f"{initial:.3g}; allowed is more than {smallest:.3g}"
+            f"load = {joint_load:g} is too large: the vibration starts with {initial:.3g} from a rest "
+            f"position of {rest.position:g}, expected more than {smallest:.3g}"
         )
     states = [v.name for v in partner.outputs[: partner.state_count]]
-    start = {joint.inertia_parameter: inertia, states[0]: rest.position + initial}
+    start = {vibrating_joint.inertia_parameter: inertia, states[0]: rest.position + initial}
     forces = [v.name for v in partner.inputs]
     with (
         Slave(
-            path, {**parameters, **body.find_start_values(load)}, body.motion_inputs, (body.force_output,)
+            path,
+            {**joint_parameters, **body.find_start_values(joint_load)},
+            body.motion_inputs,
+            (body.force_output,),
         ) as slave,
         Slave(fmu_folder / f"{body.body_model}.fmu", start, forces, states) as mass,
     ):
-        return _run_vibration(slave, mass, rest, load, inertia)
+        return _run_vibration(slave, mass, rest, joint_load, inertia)
 
 
 def _run_vibration(
-    joint: Slave, body: Slave, working_point: WorkingPoint, load: float, inertia: float
+    joint_slave: Slave, body_slave: Slave, working_point: WorkingPoint, joint_load: float, inertia: float
 ) -> FreeVibration:
     """Simulate the free vibration of two running FMUs about a working point."""
     expected = float(np.sqrt(working_point.stiffness / inertia))
     stated = working_point.damping / (2.0 * inertia * expected)
     if not stated < MAX_DAMPING_RATIO:
         raise ValueError(
-            f"load = {load:g}: damping ratio {stated:.3g} with the inertia {inertia:g}; allowed is "
+            f"load = {joint_load:g}: damping ratio {stated:.3g} with the inertia {inertia:g}; allowed is "
             f"less than {MAX_DAMPING_RATIO:g}, so that it vibrates; state a larger inertia"
         )
     step = 2.0 * np.pi / (expected * STEPS_PER_PERIOD)
     signal = (
-        simulate_motion(joint, body, working_point.force, step, PERIOD_COUNT * STEPS_PER_PERIOD)[:, 0]
+        simulate_body_on_joint(
+            joint_slave, body_slave, working_point.force, step, SIMULATED_PERIOD_COUNT * STEPS_PER_PERIOD
+        )[:, 0]
         - working_point.position
     )
     time = np.asarray(step * np.arange(signal.size), dtype=np.float64)
-    messages = tuple(dict.fromkeys(joint.messages + body.messages))
-    results = peak_frequency(signal, step), expected, damping_ratio(signal), stated
-    return FreeVibration(load, inertia, *results, time, signal, messages)
+    messages = tuple(dict.fromkeys(joint_slave.log_messages + body_slave.log_messages))
+    results = find_peak_frequency(signal, step), expected, damping_ratio(signal), stated
+    return FreeVibration(joint_load, inertia, *results, time, signal, messages)

@@ -11,26 +11,28 @@ from jointfmu.quantity import Array, replace_values
 from .system import Component, System
 from .wiring import ConnectionEnd, find_connections, find_model, find_signals
 
-_INERTIA_PARAMETERS = {"flange1": "inertia1", "flange2": "inertia2"} | dict.fromkeys(
+_INERTIA_PARAMETER_BY_FLANGE = {"flange1": "inertia1", "flange2": "inertia2"} | dict.fromkeys(
     ("flange_x", "flange_y", "flange_z"), "mass"
 )
 """{flange of a joint: parameter with the inertia of the body on this flange}."""
 
 
-def find_largest_stable_step(system: System, results: Mapping[str, Array] | None = None) -> tuple[float, str]:
+def find_largest_stable_step(
+    system: System, simulation_results: Mapping[str, Array] | None = None
+) -> tuple[float, str]:
     """Largest stable step [s] of a system with a parallel master, and the name of the joint that limits it.
 
     Each joint is treated alone with the bodies on it. An undamped joint has no stable step with a parallel
     master; then the step of a sequential master is used.
 
-    results : results of a simulation: the step is evaluated at the largest loads in them; None: at the
-        start values
+    simulation_results : time series of all connected outputs; the stable step is evaluated at their largest
+        joint loads. None: at the start values
 
-    Raises ValueError as `wiring.find_connections`.
+    Raises ValueError for invalid connections of the system.
     """
     connected, signals, steps = find_connections(system), find_signals(system), [(MAX_STABLE_STEP, "")]
     for name, component in system.joints.items():
-        bodies = _find_inertias(component, connected)
+        bodies = _find_flange_inertias(component, connected)
         if not component.parameter_file or not any(bodies.values()):
             continue
         model = find_model(component)
@@ -39,14 +41,14 @@ def find_largest_stable_step(system: System, results: Mapping[str, Array] | None
             v.name: component.parameter_file.start_value(v.name) for v in model.inputs
         } | component.constant_inputs
         operating_points: list[dict[str, float]] = [{}]
-        if results:
+        if simulation_results:
             rows = {
-                int(np.argmax(np.abs(results[f"{name}.{w.output}"])))
+                int(np.argmax(np.abs(simulation_results[f"{name}.{w.source_output}"])))
                 for w in signals
                 if w.source_component == name
             }
             input_values = {
-                w.input: results[f"{w.source_component}.{w.output}"]
+                w.target_input: simulation_results[f"{w.source_component}.{w.source_output}"]
                 for w in signals
                 if w.target_component == name
             }
@@ -58,7 +60,7 @@ def find_largest_stable_step(system: System, results: Mapping[str, Array] | None
     return min(steps)
 
 
-def _find_inertias(
+def _find_flange_inertias(
     component: Component, connections: Sequence[tuple[ConnectionEnd, ConnectionEnd]]
 ) -> dict[str, float]:
     """{parameter of a joint: inertia of the body on its flange}; 0 for a flange on the ground."""
@@ -69,12 +71,12 @@ def _find_inertias(
     }
     for first, second in connections:
         key = (
-            _INERTIA_PARAMETERS.get(first.flange.name)
+            _INERTIA_PARAMETER_BY_FLANGE.get(first.flange.terminal_name)
             if first.component is component and first.flange
             else None
         )
         if key and second.component:
-            inertia = second.component.values[
+            inertia = second.component.stated_values[
                 PARTNERS[second.component.model_name].parameter_class.inertia_name
             ]
             inertias[key] = min(inertia, inertias.get(key) or inertia)

@@ -21,7 +21,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from jointfmu_fmu_src.naming import FMU_NAME_RULE, is_identifier
+from jointfmu_fmu_src.naming import FMU_NAME_RULE, is_valid_fmu_name
 from jointfmu_fmu_src.partners import PARTNERS
 
 from jointfmu.joints import KINDS, MODELS
@@ -47,22 +47,24 @@ _NON_COMPONENT_KEYS = ("schema", "name", "description", "connect", "experiment",
 class Component:
     """Component of a system: joint, body or load.
 
-    model_name             : name of its model, of a joint or of a partner (body or load)
-    base_file              : parameter file of a joint, without values of the system; None: a partner
-    parameter_file         : parameter file of a joint, with values of the system; None: a partner
-    has_own_fmu            : whether the system needs its own FMU of the joint: it names a parameter file or a
+    model_name          : name of its model, of a joint or of a partner (body or load)
+    base_parameter_file : parameter file of a joint, without values of the system; None: a partner
+    parameter_file      : parameter file of a joint, with values of the system; None: a partner
+    has_own_fmu         : whether the system needs its own FMU of the joint: it names a parameter file or a
         catalogue item, or sets a parameter that is not an FMU variable
-    values, units, sources : {parameter or input: SI value, unit, source} given in the system file
+    stated_values       : {parameter or input: SI value} given in the system file
+    stated_units        : {parameter or input: SI unit} of these values
+    value_sources       : {parameter or input: source} of these values, as text
     """
 
     name: str
     model_name: str
-    base_file: ParameterFile | None
+    base_parameter_file: ParameterFile | None
     parameter_file: ParameterFile | None
     has_own_fmu: bool
-    values: Mapping[str, Any]
-    units: Mapping[str, str]
-    sources: Mapping[str, str]
+    stated_values: Mapping[str, Any]
+    stated_units: Mapping[str, str]
+    value_sources: Mapping[str, str]
 
     @property
     def joint_kind(self) -> str:
@@ -73,15 +75,18 @@ class Component:
     def constant_inputs(self) -> dict[str, float]:
         """{input of a joint: value} that the system keeps constant."""
         inputs = {v.name for v in MODELS[self.model_name].inputs} if self.parameter_file else set()
-        return {name: value for name, value in self.values.items() if name in inputs}
+        return {name: value for name, value in self.stated_values.items() if name in inputs}
 
     @property
     def parameters(self) -> dict[str, Any]:
         """Parameters of the component's FMU that the system file states: {parameter: value}."""
-        constant_inputs, fields = self.constant_inputs, _variable_fields(self.model_name, self.parameter_file)
+        constant_inputs, fields = (
+            self.constant_inputs,
+            _find_variable_fields(self.model_name, self.parameter_file),
+        )
         return {
             name: value
-            for name, value in self.values.items()
+            for name, value in self.stated_values.items()
             if name not in constant_inputs and name in fields
         }
 
@@ -90,13 +95,13 @@ class Component:
 class System:
     """System of joints, bodies and loads, as read from a system file.
 
-    name                : identifier, the stem of the file
-    title               : name given in the file
-    components          : {name: component}
-    connections         : pairs of ends: `COMPONENT.FLANGE`, the name of a load, or GROUND
-    stop_time, interval : end and output interval of the experiment [s]
-    arm                 : serial arm with its motion; None: the system is no arm
-    experiment_sources  : {entry of the experiment: source}
+    name                       : identifier, the stem of the file
+    title                      : name given in the file
+    components                 : {name: component}
+    connections                : pairs of ends: `COMPONENT.FLANGE`, the name of a load, or GROUND
+    stop_time, output_interval : end and output interval of the experiment [s]
+    arm                        : serial arm with its motion; None: the system is no arm
+    experiment_sources         : {entry of the experiment: source}
     """
 
     name: str
@@ -105,7 +110,7 @@ class System:
     components: Mapping[str, Component]
     connections: Sequence[tuple[str, str]]
     stop_time: float
-    interval: float
+    output_interval: float
     arm: Any = None
     experiment_sources: Mapping[str, str] = field(default_factory=dict)
 
@@ -120,15 +125,15 @@ class System:
         return {name: component for name, component in self.components.items() if component.parameter_file}
 
     @property
-    def list_values(self) -> dict[str, Any]:
+    def stated_values(self) -> dict[str, Any]:
         """Values of all parameters and inputs that the system file states: {COMPONENT.NAME: SI value}."""
         return {
             f"{component.name}.{name}": value
             for component in self.components.values()
-            for name, value in component.values.items()
+            for name, value in component.stated_values.items()
         }
 
-    def with_joint(self, parameter_file: ParameterFile) -> "System":
+    def with_joint_parameter_file(self, parameter_file: ParameterFile) -> "System":
         """Copy of the system with another parameter file for all joints of its kind without their own FMU.
 
         The bodies and loads at their flanges are scaled to the new joint: it moves as the old one did.
@@ -137,21 +142,28 @@ class System:
         for name, joint in self.joints.items():
             if joint.joint_kind == parameter_file.joint and not joint.has_own_fmu:
                 changes = {
-                    key: value for key, value in joint.values.items() if key not in joint.constant_inputs
+                    key: value
+                    for key, value in joint.stated_values.items()
+                    if key not in joint.constant_inputs
                 }
                 changed_file = parameter_file.with_values(changes, "user", f"system {self.name}")
-                components[name] = replace(joint, base_file=parameter_file, parameter_file=changed_file)
+                components[name] = replace(
+                    joint, base_parameter_file=parameter_file, parameter_file=changed_file
+                )
                 find_ratings = KINDS[parameter_file.joint].find_flange_ratings
-                assert joint.base_file
-                before, after = find_ratings(joint.base_file.values), find_ratings(parameter_file.values)
+                assert joint.base_parameter_file
+                before, after = (
+                    find_ratings(joint.base_parameter_file.values),
+                    find_ratings(parameter_file.values),
+                )
                 for flange in before:
-                    for partner in self._partners_at(f"{name}.{flange}"):
-                        components[partner] = _scale_partner(
+                    for partner in self._list_bodies_and_loads_at(f"{name}.{flange}"):
+                        components[partner] = _scale_body_or_load(
                             components[partner], before[flange], after[flange], parameter_file.name
                         )
         return replace(self, components=components)
 
-    def _partners_at(self, flange: str) -> list[str]:
+    def _list_bodies_and_loads_at(self, flange: str) -> list[str]:
         """Names of the partners (bodies and loads) that are connected to a flange of a joint directly."""
         found: set[str] = set()
         new = {flange}
@@ -163,26 +175,31 @@ class System:
         return sorted(found)
 
 
-def _scale_partner(
-    partner: Component, rating_before: FlangeRating, rating_after: FlangeRating, joint_name: str
+def _scale_body_or_load(
+    body_or_load: Component, old_joint_rating: FlangeRating, new_joint_rating: FlangeRating, joint_name: str
 ) -> Component:
     """Scale a partner (body or load) from the rated values of one joint to the rated values of another joint.
 
-    Loads scale with the rated load, inertias with the rated load over the motion of the flange. The permanent
-    load `ramp_height` also changes by the difference of the friction of both joints.
+    Loads scale with the rated load, inertias with the rated load over the motion of the flange per motion of
+    the output. The final value `ramp_height` of a load ramp also changes by the difference of the static
+    friction of both joints.
     """
-    load = rating_after.rated_load / rating_before.rated_load
-    inertia = load * rating_before.motion_over_output_motion / rating_after.motion_over_output_motion
-    if (load, inertia, rating_after.static_friction_load) == (1.0, 1.0, rating_before.static_friction_load):
-        return partner
-    values, sources = dict(partner.values), dict(partner.sources)
-    for name, unit in partner.units.items():
+    load = new_joint_rating.rated_load / old_joint_rating.rated_load
+    inertia = load * old_joint_rating.motion_over_output_motion / new_joint_rating.motion_over_output_motion
+    if (load, inertia, new_joint_rating.static_friction_load) == (
+        1.0,
+        1.0,
+        old_joint_rating.static_friction_load,
+    ):
+        return body_or_load
+    values, sources = dict(body_or_load.stated_values), dict(body_or_load.value_sources)
+    for name, unit in body_or_load.stated_units.items():
         if factor := {"N.m": load, "N": load, "kg.m2": inertia, "kg": inertia}.get(unit):
             values[name] = factor * values[name]
             if name == "ramp_height":
-                values[name] += rating_after.static_friction_load - rating_before.static_friction_load
+                values[name] += new_joint_rating.static_friction_load - old_joint_rating.static_friction_load
             sources[name] += f"; scaled to {joint_name}"
-    return replace(partner, values=values, sources=sources)
+    return replace(body_or_load, stated_values=values, value_sources=sources)
 
 
 def list_system_names() -> tuple[str, ...]:
@@ -196,59 +213,67 @@ def load_systems() -> dict[str, System]:
     return {name: load_system(name) for name in list_system_names()}
 
 
-def load_system(name: str) -> System:
+def load_system(name_or_path: str) -> System:
     """Read a system: a shipped one by name, or a file by path.
 
     Raises ValueError with one line that names the entry and what is allowed.
     """
-    return _load_shipped(name) if name in list_system_names() else read_system(find_system_file(name))
+    return (
+        _load_shipped_system(name_or_path)
+        if name_or_path in list_system_names()
+        else read_system(find_system_file(name_or_path))
+    )
 
 
-def find_system_file(name: str) -> Path:
+def find_system_file(name_or_path: str) -> Path:
     """Path of a system file: of a shipped system by name, or the path itself; ValueError for other names."""
-    if name in list_system_names():
-        return Path(str(files("jointfmu_models") / "systems" / f"{name}.toml"))
-    if not name.endswith(".toml"):
-        raise ValueError(f"system {name!r}: allowed are {', '.join(list_system_names())}, or a file .toml")
-    return Path(name)
+    if name_or_path in list_system_names():
+        return Path(str(files("jointfmu_models") / "systems" / f"{name_or_path}.toml"))
+    if not name_or_path.endswith(".toml"):
+        raise ValueError(
+            f"system {name_or_path!r}: allowed are {', '.join(list_system_names())}, or a file .toml"
+        )
+    return Path(name_or_path)
 
 
 @cache
-def _load_shipped(name: str) -> System:
+def _load_shipped_system(system_name: str) -> System:
     """Read a shipped system by its name; cached."""
-    return read_system(find_system_file(name))
+    return read_system(find_system_file(system_name))
 
 
-def read_system(path: Path) -> System:
+def read_system(system_path: Path) -> System:
     """Read and check a system file; connections are checked later, by `wiring.find_connections`.
 
     Raises ValueError with one line that names the file, the entry and what is allowed.
     """
-    document = read_document(path, "a system's file")
-    if not is_identifier(path.stem):
-        raise ValueError(f"{path}: the file name is the name of the system; allowed are {FMU_NAME_RULE}")
+    document = read_document(system_path, "a system's file")
+    if not is_valid_fmu_name(system_path.stem):
+        raise ValueError(
+            f"{system_path}: the file name is the name of the system; allowed are {FMU_NAME_RULE}"
+        )
     try:
-        return _make_system(path, document)
+        return _make_system(system_path, document)
     except ValueError as error:
-        raise ValueError(f"{path}: {str(error).removeprefix(f'{path}: ')}") from None
+        raise ValueError(f"{system_path}: {str(error).removeprefix(f'{system_path}: ')}") from None
 
 
-def _make_system(path: Path, document: Mapping[str, Any]) -> System:
-    """Make a system from the document of its file."""
-    if "experiment" not in document:
-        hint = f"; it is of a {document['joint']}" if "joint" in document else ""
+def _make_system(system_path: Path, system_document: Mapping[str, Any]) -> System:
+    """Make a system from the parsed TOML document of its file."""
+    if "experiment" not in system_document:
+        hint = f"; it is of a {system_document['joint']}" if "joint" in system_document else ""
         raise ValueError(f"has no section [experiment], expected a system's file{hint}")
-    experiment, _, times = read_entries(path, _EXPERIMENT_ENTRIES, document["experiment"])
+    experiment, _, times = read_entries(system_path, _EXPERIMENT_ENTRIES, system_document["experiment"])
     for name, item in _EXPERIMENT_ENTRIES.items():
         if text := find_problem(name, experiment.get(name), item):
             raise ValueError(f"experiment.{text}")
-    sections = {key: value for key, value in document.items() if key not in _NON_COMPONENT_KEYS}
-    connections = _check_connections(document.get("connect", []))
+    sections = {key: value for key, value in system_document.items() if key not in _NON_COMPONENT_KEYS}
+    connections = _parse_connections(system_document.get("connect", []))
     arm = None
-    if "arm" in document:
-        arm, arm_sections, arm_connections = read_arm(path, document["arm"])
+    if "arm" in system_document:
+        arm, arm_sections, arm_connections = read_arm(system_path, system_document["arm"])
         sections, connections = arm_sections | sections, [*arm_connections, *connections]
-    components = {key: _make_component(path, key, value) for key, value in sections.items()}
+    components = {key: _make_component(system_path, key, value) for key, value in sections.items()}
     for prefix in components:
         if longer := [name for name in components if name != prefix and name.startswith(prefix)]:
             raise ValueError(
@@ -258,9 +283,9 @@ def _make_system(path: Path, document: Mapping[str, Any]) -> System:
     if not any(component.parameter_file for component in components.values()):
         raise ValueError(f"no component is a joint, allowed models are {', '.join(MODELS)}")
     return System(
-        path.stem,
-        str(document.get("name", path.stem)),
-        str(document.get("description", "")),
+        system_path.stem,
+        str(system_document.get("name", system_path.stem)),
+        str(system_document.get("description", "")),
         components,
         connections,
         float(experiment["stop_time"]),
@@ -270,46 +295,49 @@ def _make_system(path: Path, document: Mapping[str, Any]) -> System:
     )
 
 
-def _check_connections(connections: Any) -> list[tuple[str, str]]:
+def _parse_connections(connect_entry: Any) -> list[tuple[str, str]]:
     """Check the value of `connect` in a system file, and convert it to pairs of ends."""
     pairs = []
-    for pair in connections if isinstance(connections, list) else [connections]:
+    for pair in connect_entry if isinstance(connect_entry, list) else [connect_entry]:
         if not (isinstance(pair, list) and len(pair) == 2 and all(isinstance(end, str) for end in pair)):
             raise ValueError(f'connect = {pair!r}, expected pairs of ends ["load", "motor.flange_a"]')
         pairs.append((pair[0], pair[1]))
     return pairs
 
 
-def _make_component(path: Path, component_name: str, section: Any) -> Component:
+def _make_component(system_path: Path, component_name: str, component_section: Any) -> Component:
     """Make a component from its section of the system file."""
     models = [*MODELS, *PARTNERS]
-    if not isinstance(section, Mapping):
+    if not isinstance(component_section, Mapping):
         raise ValueError(
-            f"{component_name} = {section!r}, expected a section [{component_name}] with its model"
+            f"{component_name} = {component_section!r}, expected a section [{component_name}] with its model"
         )
-    if not is_identifier(component_name) or component_name == GROUND:
+    if not is_valid_fmu_name(component_name) or component_name == GROUND:
         raise ValueError(f"component {component_name!r}: allowed are {FMU_NAME_RULE}, and not {GROUND!r}")
-    model = section.get("model")
+    model = component_section.get("model")
     if not isinstance(model, str) or model not in models:
         raise ValueError(f"{component_name}.model = {model!r}, allowed are {', '.join(models)}")
-    body = {key: value for key, value in section.items() if key not in ("model", *PARAMETER_FILE_KEYS)}
+    body = {
+        key: value for key, value in component_section.items() if key not in ("model", *PARAMETER_FILE_KEYS)
+    }
     joint_parameters = None
     if model in PARTNERS:
         for key in PARAMETER_FILE_KEYS:
-            if key in section:
+            if key in component_section:
                 raise ValueError(
-                    f"{component_name}.{key} = {section[key]!r}, expected none of a {model}, only its values"
+                    f"{component_name}.{key} = {component_section[key]!r}, but a {model} takes no {key}; "
+                    "state its parameters only"
                 )
         file, declared, inputs = None, dict(flatten_fields(PARTNERS[model].parameter_class)), {}
         needed = getattr(PARTNERS[model].parameter_class, "inertia_name", None)
-        if needed and needed not in section:
+        if needed and needed not in component_section:
             missing = declared[needed].metadata
             raise ValueError(
                 f"{component_name}.{needed} is not stated, expected the {missing['doc']} [{missing['unit']}]"
             )
     else:
         joint = MODELS[model].joint
-        joint_parameters = load_joint_file(path.parent, component_name, joint, section)
+        joint_parameters = load_joint_file(system_path.parent, component_name, joint, component_section)
         file = joint_parameters or load_default(joint)
         declared = {
             key: item for key, item in flatten_fields(type(file.values)) if key in file.values_by_name
@@ -317,9 +345,9 @@ def _make_component(path: Path, component_name: str, section: Any) -> Component:
         inputs = {v.name: quantity_field(v.unit, v.doc, ge=v.minimum) for v in MODELS[model].inputs}
         declared |= inputs
     try:
-        values, _, sources = read_entries(path, declared, body)
+        values, _, sources = read_entries(system_path, declared, body)
     except ValueError as error:
-        raise ValueError(f"{component_name}.{str(error).removeprefix(f'{path}: ')}") from None
+        raise ValueError(f"{component_name}.{str(error).removeprefix(f'{system_path}: ')}") from None
     for key, value in values.items():
         if key not in declared:
             raise ValueError(f"{component_name}: unknown name {key!r}, allowed are {', '.join(declared)}")
@@ -329,14 +357,14 @@ def _make_component(path: Path, component_name: str, section: Any) -> Component:
     own, base = joint_parameters is not None, file
     if file:
         changes = {key: value for key, value in values.items() if key not in inputs}
-        file = file.with_values(changes, "user", f"system {path.stem}")
-        own |= not changes.keys() <= _variable_fields(model, file).keys()
+        file = file.with_values(changes, "user", f"system {system_path.stem}")
+        own |= not changes.keys() <= _find_variable_fields(model, file).keys()
     units = {key: declared[key].metadata.get("unit", "") for key in values}
     return Component(component_name, model, base, file, own, values, units, sources)
 
 
-def _variable_fields(model: str, parameter_file: ParameterFile | None) -> dict[str, Any]:
+def _find_variable_fields(model_name: str, parameter_file: ParameterFile | None) -> dict[str, Any]:
     """{parameter: dataclass field} of the FMU variables of a model."""
     if parameter_file is None:
-        return dict(flatten_fields(PARTNERS[model].parameter_class))
-    return MODELS[model].with_parameters(parameter_file.joint, parameter_file.values).parameter_fields()
+        return dict(flatten_fields(PARTNERS[model_name].parameter_class))
+    return MODELS[model_name].with_parameters(parameter_file.joint, parameter_file.values).parameter_fields()

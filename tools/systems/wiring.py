@@ -13,23 +13,23 @@ from jointfmu.joints.model import Model
 from .system import GROUND, Component, System
 
 
-class Signal(NamedTuple):
+class SignalConnection(NamedTuple):
     """Signal from `output` of the component `source_component` to `input` of `target_component`."""
 
     source_component: str
-    output: str
+    source_output: str
     target_component: str
-    input: str
+    target_input: str
 
 
 class ConnectionEnd(NamedTuple):
     """End of a connection in a system: a flange, a prescribed load (no flange), or the ground (no component).
 
-    label               : the end as written in the system file
+    end_text            : the end as written in the system file
     variables_by_member : {Modelica member: variable}; of a load {output: output}
     """
 
-    label: str
+    end_text: str
     component: Component | None
     flange: Terminal | None
     variables_by_member: Mapping[str, str]
@@ -50,10 +50,10 @@ class ConnectionEnd(NamedTuple):
         return not self.is_joint and self.flange is not None
 
     @property
-    def flow_member(self) -> str:
+    def force_member(self) -> str:
         """Name of the flange member that is a force or torque."""
         assert self.flange
-        return next(name for name, (_, kind) in self.flange.members.items() if kind != "signal")
+        return next(name for name, (_, kind) in self.flange.member_variables.items() if kind != "signal")
 
 
 def find_model(component: Component) -> Model:
@@ -74,7 +74,7 @@ def find_connections(system: System) -> list[tuple[ConnectionEnd, ConnectionEnd]
     pairs = []
     partners: dict[str, str] = {}
     for connection in system.connections:
-        pair = [_parse_end(system, text) for text in connection]
+        pair = [_parse_connection_end(system, text) for text in connection]
         for end, other in zip(connection, reversed(connection), strict=True):
             if end != GROUND and end in partners:
                 raise ValueError(f"{end} is connected to {partners[end]} and to {other}; state one of them")
@@ -83,7 +83,9 @@ def find_connections(system: System) -> list[tuple[ConnectionEnd, ConnectionEnd]
         _check_end_compatibility(*pair)
         pairs.append((pair[0], pair[1]))
     for component in system.components.values():
-        flanges = [f"{component.name}.{flange.name}" for flange in find_terminals(find_model(component))]
+        flanges = [
+            f"{component.name}.{flange.terminal_name}" for flange in find_terminals(find_model(component))
+        ]
         if component.parameter_file and (unconnected := [name for name in flanges if name not in partners]):
             raise ValueError(
                 f'{unconnected[0]} is not connected; connect it to a flange of a body, or "{GROUND}"'
@@ -95,22 +97,26 @@ def find_connections(system: System) -> list[tuple[ConnectionEnd, ConnectionEnd]
     return pairs
 
 
-def find_signals(system: System) -> list[Signal]:
-    """List all signals of a system. Raises ValueError for the same faults as `find_connections`."""
+def find_signals(system: System) -> list[SignalConnection]:
+    """List the signals between components of a system. Raises ValueError for invalid connections."""
     signals = []
     for first, second in find_connections(system):
         if first.component is None or second.component is None:
             continue
         first_name, second_name = first.component.name, second.component.name
-        driving_members = [*first.variables_by_member] if first.is_load else [first.flow_member]
+        driving_members = [*first.variables_by_member] if first.is_load else [first.force_member]
         signals += [
-            Signal(first_name, first.variables_by_member[m], second_name, second.variables_by_member[m])
+            SignalConnection(
+                first_name, first.variables_by_member[m], second_name, second.variables_by_member[m]
+            )
             for m in driving_members
         ]
         if first.is_joint:
             motion_members = [m for m in first.variables_by_member if m not in driving_members]
             signals += [
-                Signal(second_name, second.variables_by_member[m], first_name, first.variables_by_member[m])
+                SignalConnection(
+                    second_name, second.variables_by_member[m], first_name, first.variables_by_member[m]
+                )
                 for m in motion_members
             ]
     return signals
@@ -121,11 +127,11 @@ def find_lag_parameters(system: System) -> dict[str, list[str]]:
     lag_parameters: dict[str, list[str]] = {}
     for first, second in find_connections(system):
         if first.is_joint and second.component and second.flange:
-            lag_parameters.setdefault(second.component.name, []).append(f"lag_{second.flange.side}")
+            lag_parameters.setdefault(second.component.name, []).append(f"lag_{second.flange.flange_side}")
     return lag_parameters
 
 
-def _parse_end(system: System, end_text: str) -> ConnectionEnd:
+def _parse_connection_end(system: System, end_text: str) -> ConnectionEnd:
     """Parse an end of a connection: `COMPONENT.FLANGE`, the name of a load, or "ground"."""
     name, _, flange = end_text.partition(".")
     if end_text == GROUND:
@@ -136,7 +142,7 @@ def _parse_end(system: System, end_text: str) -> ConnectionEnd:
         )
     component = system.components[name]
     model = find_model(component)
-    known = {terminal.name: terminal for terminal in find_terminals(model)}
+    known = {terminal.terminal_name: terminal for terminal in find_terminals(model)}
     if not known and component.parameter_file is None:
         if flange:
             raise ValueError(f"connect: {end_text!r}: a {model.name} has no flange, allowed is {name}")
@@ -144,7 +150,7 @@ def _parse_end(system: System, end_text: str) -> ConnectionEnd:
     if flange not in known:
         allowed = ", ".join(f"{name}.{known_flange}" for known_flange in known) or "none"
         raise ValueError(f"connect: unknown flange {end_text!r} of a {model.name}, allowed are {allowed}")
-    members = known[flange].members
+    members = known[flange].member_variables
     if component.parameter_file and "inflow" in {kind for _, kind in members.values()}:
         raise ValueError(
             f"{name}: a {model.name} has a load as input and a motion as output; expected a joint whose "
@@ -157,16 +163,16 @@ def _parse_end(system: System, end_text: str) -> ConnectionEnd:
 
 def _check_end_compatibility(first_end: ConnectionEnd, second_end: ConnectionEnd) -> None:
     """Raise ValueError if two ends of a connection do not fit, for example torque and force."""
-    prefix = f"{first_end.label} and {second_end.label} do not fit"
+    prefix = f"{first_end.end_text} and {second_end.end_text} do not fit"
     if second_end.component is None:
         if not first_end.is_joint:
             raise ValueError(f'{prefix}; allowed on "{GROUND}" are flanges of joints')
     elif first_end.is_load:
         expected_members = (
-            {second_end.flow_member}
+            {second_end.force_member}
             if second_end.is_body
             else {*second_end.variables_by_member}
-            - ({second_end.flow_member} if second_end.flange else set())
+            - ({second_end.force_member} if second_end.flange else set())
         )
         if second_end.is_load or {*first_end.variables_by_member} != expected_members:
             raise ValueError(
@@ -201,7 +207,7 @@ def _check_kinematic_loops(connections: Sequence[tuple[ConnectionEnd, Connection
     """Raise ValueError if bodies and joints form a closed loop."""
     parents: dict[str, str] = {}
 
-    def find_root(component_name: str) -> str:
+    def find_chain_root(component_name: str) -> str:
         """Name of the first component of the chain to which a component is connected."""
         while parents.get(component_name, component_name) != component_name:
             component_name = parents[component_name]
@@ -209,10 +215,10 @@ def _check_kinematic_loops(connections: Sequence[tuple[ConnectionEnd, Connection
 
     for first, second in connections:
         if first.is_joint and second.is_body and first.component and second.component:
-            roots = find_root(first.component.name), find_root(second.component.name)
+            roots = find_chain_root(first.component.name), find_chain_root(second.component.name)
             if roots[0] == roots[1]:
                 raise ValueError(
-                    f"{first.label} on {second.label} closes a loop; only chains of joints and bodies are "
-                    "possible"
+                    f"{first.end_text} on {second.end_text} closes a loop; only chains of joints and bodies "
+                    "are possible"
                 )
             parents[roots[0]] = roots[1]

@@ -30,38 +30,42 @@ def exprel(z: Number) -> Number:
     return np.where(zero, 1.0, np.expm1(z) / np.where(zero, 1.0, z))
 
 
-def exp_integral(x: Number, lower: Number, upper: Number) -> Number:
-    """Integral of exp(x t) over log-areas t in [lower, upper] [1], accurate also near x = 0.
+def exp_integral(exponent: Number, lower_log_area: Number, upper_log_area: Number) -> Number:
+    """Integral of exp(x t) dt over log-areas t from lower_log_area to upper_log_area [1].
 
-    With t = ln a this is `(upper^x - lower^x)/x` of the areas. `lower = None` stands for minus infinity,
-    with x > 0.
+    exponent       : x [1]; the result is accurate also near x = 0
+    lower_log_area : None: minus infinity, for x > 0 only
     """
-    if lower is None:
-        return np.exp(x * upper) / x
-    span = upper - lower
-    return np.exp(x * lower) * span * exprel(x * span)
+    if lower_log_area is None:
+        return np.exp(exponent * upper_log_area) / exponent
+    span = upper_log_area - lower_log_area
+    return np.exp(exponent * lower_log_area) * span * exprel(exponent * span)
 
 
-def integrate_gauss(function: Callable[[Number], Number], lower: Number, upper: Number) -> Number:
-    """Integral of a smooth function over [lower, upper] by 32 Gauss-Legendre nodes.
+def integrate_gauss(
+    integrand: Callable[[Number], Number], lower_limit: Number, upper_limit: Number
+) -> Number:
+    """Integral of a smooth function between two limits by 32 Gauss-Legendre nodes.
 
     The function is called once per node, or for small arrays once with all remaining nodes.
     """
-    middle, half = 0.5 * (lower + upper), 0.5 * (upper - lower)
-    total = _GAUSS_WEIGHTS[0] * function(middle + half * _GAUSS_NODES[0])
+    middle, half = 0.5 * (lower_limit + upper_limit), 0.5 * (upper_limit - lower_limit)
+    total = _GAUSS_WEIGHTS[0] * integrand(middle + half * _GAUSS_NODES[0])
     if isinstance(total, float | np.ndarray) and np.size(total) <= _MAX_BATCHED_ARRAY_SIZE:
         column = (-1, *(1 for _ in np.shape(total)))
-        rest = _GAUSS_WEIGHTS[1:].reshape(column) * function(middle + half * _GAUSS_NODES[1:].reshape(column))
+        rest = _GAUSS_WEIGHTS[1:].reshape(column) * integrand(
+            middle + half * _GAUSS_NODES[1:].reshape(column)
+        )
         return half * (total + np.sum(rest, axis=0))
     for node, weight in zip(_GAUSS_NODES[1:], _GAUSS_WEIGHTS[1:], strict=True):
-        total = total + weight * function(middle + half * node)
+        total = total + weight * integrand(middle + half * node)
     return half * total
 
 
 class RegimeTerm(Protocol):
     """Quantity of a contact spot (load, stiffness, area) in one regime, for example elastic contact.
 
-    The regime lies between two log-areas t = ln(area/reference area) [1].
+    The regime lies between two log-areas ln(area of the spot/reference area) [1].
     """
 
     @property
@@ -76,17 +80,21 @@ class RegimeTerm(Protocol):
         """Quantity (such as load or stiffness) of one spot of log-area t; 0 outside the regime."""
 
     def integrate_over_spots(self, size_exponent: Number, largest_log_area: Number) -> Number:
-        """Integral of the quantity of a spot times exp(-m t) over the regime, for log-areas t <= u.
+        """Integral over the regime of the quantity of a spot, weighted with the size distribution exp(-m t).
 
-        size_exponent, largest_log_area : m and u
+        t is the log-area of a spot; the integral ends at the largest spot.
+
+        size_exponent    : exponent m of the size distribution [1]
+        largest_log_area : log-area of the largest spot [1]
         """
 
 
 @dataclass(frozen=True, slots=True)
 class PowerTerm:
-    """Quantity of a contact spot as a power of its area: coefficient exp(exponent t), t its log-area.
+    """Quantity of a contact spot as a power of its area: coefficient exp(exponent t).
 
-    The quantity is 0 outside `lower_log_area < t <= upper_log_area`; a bound None is infinite.
+    t is the log-area of the spot, ln(area/reference area). The quantity is 0 outside
+    `lower_log_area < t <= upper_log_area`; a bound None is infinite.
     """
 
     coefficient: Number
@@ -103,12 +111,14 @@ class PowerTerm:
 
     def integrate_over_spots(self, size_exponent: Number, largest_log_area: Number) -> Number:
         lower = clip_regime_bound(self.lower_log_area, largest_log_area)
-        upper = clip_regime_bound(self.upper_log_area, largest_log_area, value_if_infinite=largest_log_area)
+        upper = clip_regime_bound(
+            self.upper_log_area, largest_log_area, limit_of_infinite_regime=largest_log_area
+        )
         return self.coefficient * exp_integral(self.exponent - size_exponent, lower, upper)
 
 
 @dataclass(frozen=True, slots=True)
-class SmoothTerm:
+class SmoothFunctionTerm:
     """Quantity of a contact spot as a smooth function of its log-area, summed by Gauss-Legendre quadrature.
 
     The quantity is 0 outside `[lower_log_area, upper_log_area]`.
@@ -126,7 +136,7 @@ class SmoothTerm:
 
     def integrate_over_spots(self, size_exponent: Number, largest_log_area: Number) -> Number:
         def integrand(log_area: Number) -> Number:
-            """Quantity of a spot times exp(-m t), the integrand over log-areas t."""
+            """Quantity of a spot of log-area t, times the weight exp(-m t) of the size distribution."""
             return self.spot_function(np.maximum(log_area, self.lower_log_area)) * np.exp(
                 -size_exponent * log_area
             )
@@ -145,13 +155,14 @@ class SmoothTerm:
 
 
 @dataclass(frozen=True, slots=True)
-class SlipTerm:
+class PartialSlipTerm:
     """Tangential stiffness of a spot in partial slip, as a function of its log-area t; 0 in full slip.
 
     coefficient exp(exponent t) (1 - slip_coefficient exp(-slip_exponent t))^(1/3); in full slip the bracket
     is negative.
 
-    The substitution `t = t_slip + r^3` removes the cube root at the end of slip, so Gauss-Legendre converges.
+    The bracket is zero at the log-area t_slip. The substitution `t = t_slip + r^3` removes the cube root, so
+    Gauss-Legendre quadrature converges.
     """
 
     coefficient: Number
@@ -178,11 +189,14 @@ class SlipTerm:
         )
         upper = np.maximum(clip_regime_bound(self.upper_log_area, largest_log_area), lower)
 
-        def integrand(cube_root: Number) -> Number:
-            """Stiffness of a spot times exp(-m t), after the substitution t = t_slip + r^3."""
-            t = onset + cube_root**3
-            stick = np.maximum(-np.expm1(-self.slip_exponent * cube_root**3), 0.0) ** (1.0 / 3.0)
-            return 3.0 * cube_root**2 * stick * np.exp((self.exponent - size_exponent) * t)
+        def integrand(substituted_log_area: Number) -> Number:
+            """Stiffness of a spot of log-area t, times exp(-m t), as integrand over r: t = t_slip + r^3.
+
+            m: exponent of the size distribution; t_slip: log-area up to which spots are in full slip.
+            """
+            t = onset + substituted_log_area**3
+            stick = np.maximum(-np.expm1(-self.slip_exponent * substituted_log_area**3), 0.0) ** (1.0 / 3.0)
+            return 3.0 * substituted_log_area**2 * stick * np.exp((self.exponent - size_exponent) * t)
 
         start = np.maximum(lower - onset, 0.0) ** (1.0 / 3.0)
         end = np.maximum(upper - onset, 0.0) ** (1.0 / 3.0)
@@ -190,13 +204,13 @@ class SlipTerm:
 
 
 def clip_regime_bound(
-    regime_bound: Number, largest_log_area: Number, value_if_infinite: Number = None
+    regime_bound: Number, largest_log_area: Number, limit_of_infinite_regime: Number = None
 ) -> Number:
-    """Integration limit over the log-areas of spots: the bound of a regime, at most u of the largest spot.
+    """Clip the bound of a regime to the log-area of the largest spot, as a limit of integration.
 
-    `value_if_infinite` replaces a bound None (infinite).
+    `limit_of_infinite_regime` replaces a bound None (infinite).
     """
-    return value_if_infinite if regime_bound is None else np.minimum(regime_bound, largest_log_area)
+    return limit_of_infinite_regime if regime_bound is None else np.minimum(regime_bound, largest_log_area)
 
 
 def regime_indicator(log_area: Number, lower_log_area: Number, upper_log_area: Number) -> Number:
@@ -211,11 +225,13 @@ class SpotDistribution:
     """Contact spots of a surface: size distribution; load, stiffness and area of a spot in each regime.
 
     reference_area : [m2] area a_ref of a spot with the log-area 0
-    size_exponent  : [1]  exponent m of the size distribution
-    size_prefactor : [1]  prefactor w of the size distribution
+    size_exponent  : [1]  exponent m of the number of spots with an area from a to a + da:
+        m w (a_L/a)^m da/a, with the area a_L of the largest spot
+    size_prefactor : [1]  prefactor w of this number
     regime_terms   : {quantity of a spot: its terms, one per regime}; always contains `load` [N]
     onset_log_area : [1] log-area at which the stiffness begins, for a law without plastic spots; else None
-    has_spot_area : whether u is the log-area of the largest spot; else it only measures the load
+    has_spot_area : whether the argument u is the log-area of the largest spot; False: the law has no spots,
+        and u is a logarithm of the load
     kink_log_areas : log-areas [1], ascending, at which derivatives of a spline of the stiffness jump
     """
 
@@ -227,20 +243,24 @@ class SpotDistribution:
     has_spot_area: bool = True
     kink_log_areas: Sequence[Number] = ()
 
-    def sum_over_spots(self, quantity: str, largest_log_area: Number) -> Number:
+    def sum_over_spots(self, quantity_name: str, largest_log_area: Number) -> Number:
         """Sum Q(u) over all spots of a quantity (load, stiffness, area); u: log-area of the largest spot."""
         return (
             self.size_exponent
             * self.size_prefactor
             * np.exp(self.size_exponent * largest_log_area)
-            * self._integrate_spots(quantity, largest_log_area)
+            * self._integrate_spots(quantity_name, largest_log_area)
         )
 
-    def sum_over_spots_derivative(self, quantity: str, largest_log_area: Number) -> Number:
-        """Derivative of `sum_over_spots` by the log-area u of the largest spot: m Q + m w q(a_L)."""
-        largest = sum(term.evaluate_spot(largest_log_area) for term in self.regime_terms[quantity])
+    def sum_over_spots_derivative(self, quantity_name: str, largest_log_area: Number) -> Number:
+        """Derivative of `sum_over_spots` with respect to the log-area u of the largest spot.
+
+        m Q + m w q, with the sum Q, the quantity q of the largest spot, and exponent m and prefactor w of the
+        size distribution.
+        """
+        largest = sum(term.evaluate_spot(largest_log_area) for term in self.regime_terms[quantity_name])
         return (
-            self.size_exponent * self.sum_over_spots(quantity, largest_log_area)
+            self.size_exponent * self.sum_over_spots(quantity_name, largest_log_area)
             + self.size_exponent * self.size_prefactor * largest
         )
 
@@ -252,7 +272,7 @@ class SpotDistribution:
         return reduce(np.minimum, (term.lower_log_area for term in self.regime_terms["normal"]))
 
     @property
-    def first_kink(self) -> Number:
+    def first_kink_log_area(self) -> Number:
         """Smallest log-area [1] at which derivatives of a spline of the stiffness jump.
 
         Plus infinity for a law without such a spline.
@@ -281,18 +301,24 @@ class SpotDistribution:
         ]
         return [*ends, *([] if self.onset_log_area is None else [self.onset_log_area]), *self.kink_log_areas]
 
-    def log_sum_over_spots(self, quantity: str, largest_log_area: Number) -> tuple[Number, Number]:
-        """Logarithm ln Q(u) of the sum over all spots, and its derivative with respect to u."""
-        integral = self._integrate_spots(quantity, largest_log_area)
-        largest = sum(term.evaluate_spot(largest_log_area) for term in self.regime_terms[quantity])
+    def log_sum_over_spots(self, quantity_name: str, largest_log_area: Number) -> tuple[Number, Number]:
+        """Logarithm of the sum of a quantity over all spots, and its derivative with respect to u.
+
+        u: log-area of the largest spot.
+        """
+        integral = self._integrate_spots(quantity_name, largest_log_area)
+        largest = sum(term.evaluate_spot(largest_log_area) for term in self.regime_terms[quantity_name])
         growth = largest * np.exp(-self.size_exponent * largest_log_area) / integral
         return np.log(
             self.size_exponent * self.size_prefactor * integral
         ) + self.size_exponent * largest_log_area, self.size_exponent + growth
 
-    def _integrate_spots(self, quantity: str, largest_log_area: Number) -> Number:
-        """Integral of a quantity over the spots up to log-area u, without the prefactor of their number."""
+    def _integrate_spots(self, quantity_name: str, largest_log_area: Number) -> Number:
+        """Integral of a quantity of a spot, weighted with exp(-m t), over log-areas t up to the largest spot.
+
+        m: exponent of the size distribution. `sum_over_spots` multiplies the integral by the number of spots.
+        """
         return sum(
             term.integrate_over_spots(self.size_exponent, largest_log_area)
-            for term in self.regime_terms[quantity]
+            for term in self.regime_terms[quantity_name]
         )

@@ -26,7 +26,7 @@ MAX_ROUGHNESS_HEIGHT = 1e-4
 
 
 def _declare_height(doc: str) -> Any:
-    """Declare a height of a surface [m]: dataclass field with interval and meaning."""
+    """Declare a roughness height of a surface [m]: dataclass field with interval and meaning."""
     return quantity_field(
         "m",
         f"{doc}, measured over the longest wavelength that machining leaves",
@@ -65,17 +65,17 @@ def predicted_stiffness(pressure: Number, h: Number) -> Number:
 
 
 def conflicting_heights(height_name: str) -> tuple[str, ...]:
-    """Names of the heights that a file must not state together with a height.
+    """Names of the roughness heights that a file must not state together with the height `height_name`.
 
-    The result has the other heights of the same surface, and the combined height `h`.
+    These are the other height of the same surface, and the combined height `h` of both surfaces.
     """
     if height_name == "h":
         return tuple(other for other in HEIGHT_FIELDS if other != "h")
     return ({"a": "Rq", "q": "Ra"}[height_name[1]] + height_name[2], "h")
 
 
-def check_heights(heights: Mapping[str, Any], name_prefix: str = "") -> dict[str, Number]:
-    """Check heights {name: height [m]}, floats or arrays, and return them with floats.
+def check_heights(surface_heights: Mapping[str, Any], name_prefix: str = "") -> dict[str, Number]:
+    """Check roughness heights {name: height [m]}, numbers or arrays; return them with numbers as floats.
 
     name_prefix : precedes the names in errors
 
@@ -83,24 +83,26 @@ def check_heights(heights: Mapping[str, Any], name_prefix: str = "") -> dict[str
     two heights of one surface.
     """
     declared = {name_prefix + name: item for name, item in HEIGHT_FIELDS.items()}
-    texts = find_problems({name_prefix + name: value for name, value in heights.items()}, declared)
-    for name in (name for name in heights if name in HEIGHT_FIELDS):
-        conflicts = [other for other in conflicting_heights(name) if other in heights]
+    texts = find_problems({name_prefix + name: value for name, value in surface_heights.items()}, declared)
+    for name in (name for name in surface_heights if name in HEIGHT_FIELDS):
+        conflicts = [other for other in conflicting_heights(name) if other in surface_heights]
         if conflicts:
             others = ", ".join(name_prefix + other for other in conflicts)
             texts.append(f"{name_prefix}{name} with {others}: state one height for each side, or only h")
             break
     if texts:
         raise ValueError("; ".join(texts))
-    return {name: value if np.ndim(value) else float(value) for name, value in heights.items()}
+    return {name: value if np.ndim(value) else float(value) for name, value in surface_heights.items()}
 
 
-def combined_height(heights: Mapping[str, Number]) -> Number | None:
+def combined_height(surface_heights: Mapping[str, Number]) -> Number | None:
     """Combined rms height h [m] of both surfaces; None if no height is stated."""
-    if not heights:
+    if not surface_heights:
         return None
-    if "h" in heights:
-        return heights["h"]
-    sides = (heights.get(f"Rq{side}", rms_height(heights.get(f"Ra{side}", 0.0))) for side in (1, 2))
+    if "h" in surface_heights:
+        return surface_heights["h"]
+    sides = (
+        surface_heights.get(f"Rq{side}", rms_height(surface_heights.get(f"Ra{side}", 0.0))) for side in (1, 2)
+    )
     h = combine_heights(*sides)
     return h if np.ndim(h) else float(h)

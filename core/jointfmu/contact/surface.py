@@ -24,7 +24,10 @@ class ProfileSurface(FlankSurface):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArealSurface(CheckedParameters):
-    """Self-affine surface, with the fractal parameters of the surface (Hu 2023); D = 1 + D of a profile."""
+    """Self-affine surface, with the fractal parameters of the surface (Hu 2023).
+
+    The fractal dimension D of the surface is 1 + that of a profile.
+    """
 
     D: float = quantity_field("1", "fractal dimension of the surface", gt=2.0, lt=3.0)
     G: float = quantity_field("m", "fractal roughness", gt=0.0)
@@ -56,15 +59,18 @@ class ElasticPlasticConstants(ElasticConstants):
 
 
 def contact_modulus(side1: ElasticConstants, side2: ElasticConstants) -> Number:
-    """Contact modulus E* [Pa], 1/E* = sum (1 - nu_i^2)/E_i.
+    """Contact modulus E* [Pa] of two bodies, 1/E* = sum (1 - nu_i^2)/E_i.
 
-    Zhao 2018 below Eq. 8; Hu 2023 below Eq. 7; Yu 2022 Eq. 21.
+    E_i, nu_i: Young's modulus and Poisson ratio of a body. Zhao 2018 below Eq. 8; Hu 2023 below Eq. 7; Yu
+    2022, Eq. 21.
     """
     return 1.0 / ((1.0 - side1.nu**2) / side1.E + (1.0 - side2.nu**2) / side2.E)
 
 
 def contact_shear_modulus(side1: ElasticConstants, side2: ElasticConstants) -> Number:
-    """Contact shear modulus G' [Pa], 1/G' = sum (2 - nu_i)/G_i with G_i = E_i/(2 (1 + nu_i)).
+    """Contact shear modulus G' [Pa] of two bodies, 1/G' = sum (2 - nu_i)/G_i.
+
+    G_i = E_i/(2 (1 + nu_i)): shear modulus, with Young's modulus E_i and Poisson ratio nu_i of a body.
 
     Zhao 2018 below Eq. 21.
     """
@@ -73,7 +79,9 @@ def contact_shear_modulus(side1: ElasticConstants, side2: ElasticConstants) -> N
 
 
 def hardness_coefficient(nu: Number) -> Number:
-    """Hardness coefficient k = 0.454 + 0.41 nu [1]: yield begins at the peak Hertz pressure k H.
+    """Hardness coefficient k = 0.454 + 0.41 nu [1]: yield begins at the peak Hertz pressure k times hardness.
+
+    nu: Poisson ratio of the softer body.
 
     Hu 2023 below Eq. 7.
     """
@@ -81,7 +89,9 @@ def hardness_coefficient(nu: Number) -> Number:
 
 
 def domain_extension(D: Number) -> Number:
-    r"""Domain extension factor psi [1], root of Zhao 2018, Eq. 3, for a profile dimension 1 < D < 2.
+    r"""Domain extension factor psi [1] of the size distribution of spots, for a profile dimension 1 < D < 2.
+
+    Root of Zhao 2018, Eq. 3.
 
     With q = (2 - D)/D and A = (D/2) ln psi the equation reads
     `(exp(q A) - (1 + exp(-A))^-q)/q = 1`; `expm1` handles its removable singularity at D = 2.
@@ -100,7 +110,9 @@ def domain_extension(D: Number) -> Number:
 
 
 def domain_extension_fit(D: Number) -> Number:
-    """Domain extension factor psi [1] for a surface dimension 2 < D < 3: fit of Hu 2023 below Eq. 17.
+    """Domain extension factor psi [1] of the size distribution, for a surface dimension 2 < D < 3.
+
+    Fit of Hu 2023 below Eq. 17.
 
     The fit is within 0.38 % of the root that `domain_extension` finds.
     """

@@ -35,13 +35,13 @@ _FOREIGN_FILE_ENDING_PATTERN = re.compile(
 """File name endings of kinds that no command writes to a path chosen by the user."""
 
 
-def _has_program_mark(path: Path) -> bool:
+def _has_program_mark(output_path: Path) -> bool:
     """Whether the head of a file, or of the description in an FMU or SSP archive, contains PROGRAM_MARK."""
-    with path.open("rb") as file:
+    with output_path.open("rb") as file:
         head = file.read(_PROGRAM_MARK_SEARCH_SIZE)
     if head.startswith(b"PK"):
         try:
-            with zipfile.ZipFile(path) as archive:
+            with zipfile.ZipFile(output_path) as archive:
                 member = next(filter(_ARCHIVE_DESCRIPTION_NAME_PATTERN.fullmatch, archive.namelist()))
                 with archive.open(member) as text:
                     head = text.read(_PROGRAM_MARK_SEARCH_SIZE)
@@ -54,29 +54,29 @@ def _has_program_mark(path: Path) -> bool:
 class FileKind:
     """Kind of an output file: its name, its file name endings, and how a file of this kind is recognised.
 
-    name_in_messages : name of the kind in messages
-    endings          : file name endings of this kind, lower case
-    is_program_file  : function, path -> whether the program wrote this file
+    name_in_messages  : name of the kind in messages
+    file_name_endings : file name endings of this kind, lower case
+    is_program_file   : function, path -> whether the program wrote this file
     """
 
     name_in_messages: str
-    endings: tuple[str, ...]
+    file_name_endings: tuple[str, ...]
     is_program_file: Callable[[Path], bool] = _has_program_mark
 
 
-def _is_unedited(path: Path) -> bool:
+def _is_unedited_parameter_file(parameter_path: Path) -> bool:
     """Whether a parameter file is unchanged since the program wrote it; an edited file is the user's."""
-    text = path.read_bytes().decode("utf-8", "replace").replace("\r\n", "\n")
+    text = parameter_path.read_bytes().decode("utf-8", "replace").replace("\r\n", "\n")
     match = _CHECKSUM_PATTERN.match(text)
     return match is not None and match[1] == _compute_checksum(text[match.end() :])
 
 
 def _compute_checksum(file_text: str) -> str:
-    """Checksum of the text of a parameter file, for its first line: it reveals later edits."""
+    """Checksum of the text of a parameter file, written into its first line to recognise later edits."""
     return f"{zlib.crc32(file_text.encode()):08x}"
 
 
-PARAMETER_FILE = FileKind("parameter file", (".toml",), _is_unedited)
+PARAMETER_FILE = FileKind("parameter file", (".toml",), _is_unedited_parameter_file)
 """Parameter files of joints."""
 HTML_FILE = FileKind("page", (".html", ".htm"))
 """HTML pages: reports, laboratory, figures."""
@@ -84,7 +84,7 @@ PICTURE_FILE = FileKind("picture", (".png", ".svg"))
 """Pictures of plots."""
 ARCHIVE_FILE = FileKind("FMU or SSP archive", (".fmu", ".ssp"))
 """FMUs, and SSP archives of systems."""
-EXCHANGE_FILE = FileKind(
+EXPORTED_TEXT_FILE = FileKind(
     "text for another tool",
     (".bdf", ".cdb", ".comm", ".csv", ".inp", ".mac", ".mo", ".mjcf", ".urdf", ".xml"),
 )
@@ -97,74 +97,77 @@ OUTPUT_FOLDER = FileKind("folder", ())
 """Folders into which several files are written."""
 _PROGRAM_FILE_ENDINGS = {
     end
-    for kind in (PARAMETER_FILE, HTML_FILE, PICTURE_FILE, ARCHIVE_FILE, EXCHANGE_FILE, MESH_FILE)
-    for end in kind.endings
+    for kind in (PARAMETER_FILE, HTML_FILE, PICTURE_FILE, ARCHIVE_FILE, EXPORTED_TEXT_FILE, MESH_FILE)
+    for end in kind.file_name_endings
 }
 """Endings of the names of all kinds of files that this program writes."""
 
 
-def write_parameter_text(path: str | Path, file_text: str) -> None:
-    """Write a parameter file; its first line has a checksum that reveals later edits.
+def write_parameter_text(parameter_path: str | Path, file_text: str) -> None:
+    """Write a parameter file, with a checksum in its first line to recognise later edits.
 
     Raises ValueError as `write_text` does.
     """
-    write_text(path, f"# {PROGRAM_MARK}; checksum {_compute_checksum(file_text)}\n{file_text}")
+    write_text(parameter_path, f"# {PROGRAM_MARK}; checksum {_compute_checksum(file_text)}\n{file_text}")
 
 
-def check_output(path: str | Path, file_kind: FileKind, overwrite: bool = False) -> None:
-    """Raise ValueError, which names the path, if a file of this kind may not or cannot be written there.
+def check_output(output_path: str | Path, file_kind: FileKind, overwrite: bool = False) -> None:
+    """Raise ValueError, which names the path, if an output file must not or cannot be written.
 
     Errors are a folder, the ending of another kind of file, a write-protected file, a location that cannot be
-    written, and, without `force`, a file with content that the program did not write (InputRefusal). A device
-    or pipe only has to be writable. Call it before long work; it leaves no file behind.
+    written, and, without `overwrite`, a file with content that the program did not write (InputRefusal). A
+    device or pipe only has to be writable. Call it before long work; it leaves no file behind.
     """
-    path = Path(path)
+    output_path = Path(output_path)
     if file_kind is OUTPUT_FOLDER:
-        check_writable(path, path)
+        check_writable(output_path, output_path)
         return
-    if path.is_dir():
-        raise ValueError(f"{path}: is a folder; expected a file to write")
-    if is_stream(path):
-        if not os.access(path, os.W_OK):
-            raise ValueError(f"{path}: cannot be written (Permission denied); expected a writable place")
+    if output_path.is_dir():
+        raise ValueError(f"{output_path}: is a folder; expected a file to write")
+    if is_stream(output_path):
+        if not os.access(output_path, os.W_OK):
+            raise ValueError(
+                f"{output_path}: cannot be written (Permission denied); expected a writable place"
+            )
         return
-    target = Path(os.path.realpath(path))
-    for ending in (path.suffix.lower(), target.suffix.lower()):
+    target = Path(os.path.realpath(output_path))
+    for ending in (output_path.suffix.lower(), target.suffix.lower()):
         known = ending in _PROGRAM_FILE_ENDINGS or _FOREIGN_FILE_ENDING_PATTERN.fullmatch(ending)
-        if known and ending not in file_kind.endings:
-            allowed = " or ".join(file_kind.endings)
-            raise ValueError(f"{path}: {ending} is the suffix of another kind of file; expected {allowed}")
+        if known and ending not in file_kind.file_name_endings:
+            allowed = " or ".join(file_kind.file_name_endings)
+            raise ValueError(
+                f"{output_path}: {ending} is the suffix of another kind of file; expected {allowed}"
+            )
     try:
         if target.exists():
             if not os.access(target, os.W_OK):
-                raise ValueError(f"{path}: is write-protected; expected another file")
+                raise ValueError(f"{output_path}: is write-protected; expected another file")
             if not overwrite and target.stat().st_size and not file_kind.is_program_file(target):
                 raise InputRefusal(
-                    f"{path}: exists, and is not a {file_kind.name_in_messages} written by jointfmu, "
-                    "or was edited; "
-                    "state another file, or force to replace it",
+                    f"{output_path}: exists, and is not a {file_kind.name_in_messages} written by jointfmu, "
+                    "or was edited; state another file, or force to replace it",
                     "force",
                 )
     except OSError as error:
-        raise ValueError(f"{path}: cannot be read ({error.strerror}); expected another file") from None
-    check_writable(path, target.parent)
+        raise ValueError(f"{output_path}: cannot be read ({error.strerror}); expected another file") from None
+    check_writable(output_path, target.parent)
 
 
-def check_outputs(paths: Iterable[Path], file_kind: FileKind, overwrite: bool = False) -> None:
-    """Raise ValueError, before the work starts, if an output file may not or cannot be written.
+def check_outputs(output_paths: Iterable[Path], file_kind: FileKind, overwrite: bool = False) -> None:
+    """Raise ValueError if one of several output files of one kind must not or cannot be written.
 
-    All files are of one kind; the errors are those of `check_output`.
+    Call it before long work. The errors are those of `check_output`.
     """
-    for path in paths:
+    for path in output_paths:
         check_output(path, file_kind, overwrite)
 
 
-def is_same_file(path1: Path, path2: Path) -> bool:
+def is_same_file(first_path: Path, second_path: Path) -> bool:
     """Whether two paths lead to the same file, also through links.
 
     If one of them does not exist, names are compared without regard to case.
     """
     try:
-        return os.path.samefile(path1, path2)
+        return os.path.samefile(first_path, second_path)
     except OSError:  # one of them does not exist yet
-        return os.path.realpath(path1).casefold() == os.path.realpath(path2).casefold()
+        return os.path.realpath(first_path).casefold() == os.path.realpath(second_path).casefold()

@@ -17,27 +17,31 @@ _stores: list[ResultStore] = []
 """Store of computed results of this process, at most one."""
 
 
-def set_result_store(store: ResultStore | None) -> None:
-    """Set the store of computed results for this process; None: every result is computed anew."""
-    _stores[:] = [] if store is None else [store]
+def set_result_store(result_store: ResultStore | None) -> None:
+    """Set the store of computed results that this process uses; None: it computes every result anew."""
+    _stores[:] = [] if result_store is None else [result_store]
 
 
-def compute_once(function_name: str, arguments: "Sequence[Array]", compute: "Callable[[], Array]") -> "Array":
-    """Array (...) of float64 that a function computes, or that the result store has for the same arguments.
+def compute_or_load_array(
+    function_name: str, function_arguments: "Sequence[Array]", compute_array: "Callable[[], Array]"
+) -> "Array":
+    """Compute an array (...) of float64, or take it from the result store if it has one for these arguments.
 
-    function_name : text with the name of the computation, and all other numbers on which it depends
+    function_name      : name of the computation, and all other numbers on which the result depends
+    function_arguments : arrays on which the result depends
+    compute_array      : function without arguments that computes the array
     """
     import numpy as np  # here: the tools import this module before they can report an interrupt
 
     if not _stores:
-        return compute()
+        return compute_array()
     digest = sha256(function_name.encode())
-    for argument in arguments:
+    for argument in function_arguments:
         digest.update(f"\0{argument.shape} ".encode() + np.ascontiguousarray(argument, "<f8").tobytes())
 
     def compute_bytes() -> bytes:
         """Compute the result, as the bytes of a float64 array."""
-        result = compute()
+        result = compute_array()
         return f"{' '.join(map(str, result.shape))}\n".encode() + result.astype("<f8").tobytes()
 
     head, _, content = _stores[0](digest.hexdigest(), compute_bytes).partition(b"\n")

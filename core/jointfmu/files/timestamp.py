@@ -4,12 +4,15 @@ from datetime import UTC, datetime
 from os import environ
 
 
-def build_time() -> datetime:
-    """Date that is written into files: SOURCE_DATE_EPOCH if it is set, for reproducible files, else now."""
-    return source_date() or datetime.now(UTC)
+def get_build_time() -> datetime:
+    """Date and time to be written into files: that of SOURCE_DATE_EPOCH, if set, else the present time.
+
+    The environment variable makes the files reproducible.
+    """
+    return read_source_date() or datetime.now(UTC)
 
 
-def source_date() -> datetime | None:
+def read_source_date() -> datetime | None:
     """Date and time in the environment variable SOURCE_DATE_EPOCH (seconds since 1970); None if not set.
 
     The variable makes written files reproducible.

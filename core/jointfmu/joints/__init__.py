@@ -18,15 +18,20 @@ MODELS: dict[str, Model] = {model.name: model for kind in KINDS.values() for mod
 """{name of the FMU: its model} for all joints."""
 
 
-def register_joint(kind: JointKind) -> None:
-    """Add a joint of another package, for this process: it is built, checked and listed like the others.
+def register_joint(joint_kind: JointKind) -> None:
+    """Add a kind of joint of another package, for this process: it is built and listed like the others.
 
     Raises ValueError if its name, or the name of one of its models, is already in use.
     """
-    taken = [name for name in (kind.name, *(model.name for model in kind.models)) if name in KINDS | MODELS]
+    taken = [
+        name
+        for name in (joint_kind.name, *(model.name for model in joint_kind.models))
+        if name in KINDS | MODELS
+    ]
     if taken:
         raise ValueError(
-            f"joint {kind.name!r}: the name {taken[0]!r} is already used by another joint; state another name"
+            f"joint {joint_kind.name!r}: the name {taken[0]!r} is already used by another joint; state "
+            "another name"
         )
-    KINDS[kind.name] = kind
-    MODELS.update((model.name, model) for model in kind.models)
+    KINDS[joint_kind.name] = joint_kind
+    MODELS.update((model.name, model) for model in joint_kind.models)

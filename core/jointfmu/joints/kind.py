@@ -11,22 +11,24 @@ from .model import Model, Variable
 
 @dataclass(frozen=True, slots=True)
 class RoughSurface:
-    """Surface of a joint; its fractal parameters `PREFIX.D`, `PREFIX.G` can be fitted to measured heights.
+    """Rough surface of a joint, whose fractal parameters can be fitted to measured heights.
 
-    is_areal  : True: D_s and G_s of the surface; False: D and G of a profile
-    direction : direction of the profile on a textured surface, "x" or "y"; None: direction of less scatter
+    parameter_prefix  : prefix of the names of the parameters D (fractal dimension), G (fractal roughness)
+    is_areal          : True: D_s and G_s of the surface; False: D and G of a profile
+    profile_direction : direction of the profile on a textured surface, "x" or "y"; None: direction of less
+                        scatter
     """
 
     parameter_prefix: str
     is_areal: bool = False
-    direction: str | None = None
+    profile_direction: str | None = None
 
 
 class FlangeRating(NamedTuple):
     """Rated values at a flange of a joint, to scale the bodies and loads of a system to the joint.
 
     rated_load                : rated force or torque [N or N.m]
-    motion_over_output_motion : motion of the flange over motion of the joint's output flange [1]
+    motion_over_output_motion : motion of the flange, divided by that of the joint's output flange [1]
     static_friction_load      : dry friction at rest [N or N.m]
     """
 
@@ -35,15 +37,15 @@ class FlangeRating(NamedTuple):
     static_friction_load: float
 
 
-def use_parameters_as_law(parameters: object) -> object:
-    """Return a parameter set unchanged.
+def use_parameters_as_law(parameter_set: object) -> object:
+    """Return a joint's parameter set unchanged, as its interface law.
 
-    A joint whose parameter set is itself the interface law uses this function as `extract_law`.
+    For joints whose parameters are those of the law.
     """
-    return parameters
+    return parameter_set
 
 
-def find_no_contradictions(parameters: object) -> Iterable[str]:
+def accept_any_parameters(parameter_set: object) -> Iterable[str]:
     """Return an empty list of contradictions: for a joint whose parameters are independent."""
     return ()
 
@@ -52,7 +54,7 @@ def find_no_contradictions(parameters: object) -> Iterable[str]:
 class JointKind:
     """Description of one kind of joint.
 
-    name          : name of its folders, and `joint = NAME` in parameter files
+    name          : name of the joint's folders, and `joint = NAME` in parameter files
     package       : import name of its subpackage
     default_file_stem : stem of the file name of its default parameter file
     laws          : {name of a law: class of the joint's parameter set with this law}, the default law first.
@@ -61,7 +63,7 @@ class JointKind:
                     joint has none
     laws_without_interface : names of the laws that are not the law of an interface; `extract_law` gives None
     models        : exported models; the first is the component of the joint in a system model
-    surfaces      : rough surfaces whose parameters can be measured
+    surfaces      : rough surfaces whose fractal parameters can be fitted to measured heights
     working_point : names of the inputs that fix the point of linearisation (preload, ...); the first one is
                     always required
     find_contradictions : function, parameter set -> one message per parameter that contradicts another one;
@@ -78,7 +80,7 @@ class JointKind:
     models: Sequence[Model]
     surfaces: Sequence[RoughSurface] = ()
     working_point: Sequence[str] = ()
-    find_contradictions: Callable[..., Iterable[str]] = find_no_contradictions
+    find_contradictions: Callable[..., Iterable[str]] = accept_any_parameters
     find_flange_ratings: Callable[..., Mapping[str, FlangeRating]] = lambda parameters: {}
 
     @property
@@ -91,9 +93,9 @@ class JointKind:
         """Class of the parameter set with the default law."""
         return next(iter(self.laws.values()))
 
-    def law_name(self, parameters: object) -> str:
+    def law_name(self, parameter_set: object) -> str:
         """Name of the law of a parameter set, a key of `laws`."""
-        return next(name for name, cls in self.laws.items() if type(parameters) is cls)
+        return next(name for name, cls in self.laws.items() if type(parameter_set) is cls)
 
     def find_model(self, fmu_name: str | None = None) -> Model:
         """Model with the name of an FMU; None: the first model. Raises ValueError if there is none."""
@@ -106,7 +108,7 @@ class JointKind:
 
     @property
     def variables(self) -> dict[str, Variable]:
-        """Inputs and outputs of all models of the joint, {name: variable}."""
+        """Inputs and outputs {name: variable} of all FMU models of the joint."""
         return {v.name: v for model in self.models for v in (*model.inputs, *model.outputs)}
 
     @property
@@ -114,12 +116,12 @@ class JointKind:
         """Whether the joint is part of jointfmu, not of another package."""
         return self.package.startswith(f"{__package__}.")
 
-    def tabulate(self, parameters: object) -> object:
-        """Joint ready for evaluation: parameter set with the load-displacement table computed from it."""
-        return self.models[0].tabulate(parameters)
+    def tabulate(self, parameter_set: object) -> object:
+        """Compute the load-displacement table of a parameter set: joint ready for evaluation."""
+        return self.models[0].tabulate(parameter_set)
 
     def default_file(self, law_name: str | None = None) -> Path:
-        """Path of the default parameter file of a law; None: of the default law.
+        """Path of the joint's default parameter file with a law; None: with the default law.
 
         The file is models/NAME/`default_file_stem`.toml; the name of another law follows the stem after an
         underscore. A joint of another package has its files in the folder models/ of that package.

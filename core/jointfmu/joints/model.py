@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 from ..quantity import Interval, Number, flatten_fields
 
 VariableValues = Mapping[str, float]
-Outputs = Mapping[str, Number]
+OutputValues = Mapping[str, Number]
 History = NDArray[np.float64]
 
 
-class TabulatedLaw(Protocol):
+class LoadDisplacementTable(Protocol):
     """Load-displacement table of a joint, which ends at a largest displacement."""
 
     @property
@@ -38,8 +38,8 @@ class TabulatedJoint(Protocol):
         """Parameter set of the joint, a frozen dataclass; C code is generated from it."""
 
     @property
-    def curve(self) -> TabulatedLaw:
-        """Table of load over displacement, from which the outputs are interpolated."""
+    def curve(self) -> LoadDisplacementTable:
+        """Table of the load as a function of the displacement, from which the outputs are interpolated."""
 
 
 INPUT_MARGIN_OVER_NOMINAL = 1e-5
@@ -65,28 +65,30 @@ class Variable:
 
     @property
     def interval(self) -> Interval:
-        """Values that an input may have: finite, and at least `minimum`."""
+        """Interval of allowed values of an input: finite, and at least `minimum`."""
         return Interval.from_bounds(ge=self.minimum)
 
     @property
     def minimum_margin(self) -> float:
-        """Tolerance [unit of the variable]: an input below `minimum` by at most this counts as `minimum`."""
+        """Tolerance, in the variable's unit, by which a solver's steps may set an input below `minimum`."""
         return INPUT_MARGIN_OVER_NOMINAL * self.nominal if math.isfinite(self.minimum) else 0.0
 
-    def round_to_minimum(self, value: float) -> float:
-        """Value of an input: `minimum`, if it is below by at most `minimum_margin`."""
-        return self.minimum if self.minimum - self.minimum_margin <= value < self.minimum else value
+    def round_to_minimum(self, input_value: float) -> float:
+        """Raise an input value to `minimum` if it is below by at most `minimum_margin`; else return it."""
+        return (
+            self.minimum if self.minimum - self.minimum_margin <= input_value < self.minimum else input_value
+        )
 
 
 @dataclass(frozen=True, slots=True)
 class LoadRamp:
-    """Load ramp of one input, the default experiment: the input grows in steps.
+    """Load ramp of one input of a model, its default experiment: the input grows in steps.
 
     end_value, value_step : largest value and increment of the input for the default parameters
     step_duration    : [s] time between two steps
-    parameter_values : {parameter: value} for experiments that show a change over time
-    find_range       : function (tabulated joint, start values) -> onset and end value suited to its
-        parameters; None: `onset_value` and `end_value` hold for all parameters
+    parameter_values : {parameter: value} that replace default parameters during the ramp
+    find_load_range  : function (tabulated joint, start values) -> onset and end value for the parameters of
+        this joint; None: `onset_value` and `end_value` hold for all parameters
     onset_value      : value of the input at which the load starts to act
     """
 
@@ -95,7 +97,7 @@ class LoadRamp:
     value_step: float
     step_duration: float = 1.0
     parameter_values: Mapping[str, float] = field(default_factory=dict)
-    find_range: Callable[..., tuple[float, float]] | None = None
+    find_load_range: Callable[..., tuple[float, float]] | None = None
     onset_value: float = 0.0
 
     def sample_inputs(self, value_count: int) -> NDArray[np.float64]:
@@ -115,13 +117,13 @@ class LoadCycle:
     """
 
     input_name: str
-    amplitude: float
+    input_amplitude: float
     variable_values: Mapping[str, float | bool]
 
 
 @dataclass(frozen=True, slots=True)
 class ValidityLimit:
-    """Validity limit: a warning if a variable leaves an interval, for example the end of the table.
+    """Validity limit: interval of an input or output outside of which the FMU warns, such as its table's end.
 
     variable_name : name of the input or output
     find_interval : function (parameter set, (displacement, load) at the end of the table, inputs) -> lower
@@ -146,14 +148,14 @@ class Model:
     validity_limits : a warning for each variable that leaves its interval
     ramp     : default experiment
     dependencies : {output: inputs that it depends on}; outputs that are not listed depend on all inputs
-    linear_factors : {output: {input: kind of the factor}} for outputs that are linear in an input. The
-        factor is "constant", or a function of the parameters alone ("parameters").
+    linear_factors : {output: {input: kind of the factor}} for outputs that are linear in an input: "constant"
+        if the factor is a number, "parameters" if it is a function of the parameters alone
     fixed_parameters : parameters, or prefixes of their names, that the FMU does not expose
     state_count : number of continuous states, which are the first outputs: positions of bodies, then their
         speeds; then follow the accelerations. So the rate of output i is output i + number of bodies.
     evaluate_residuals : function (tabulated joint, inputs, states and accelerations) -> residuals of the
-        equations of motion, whose derivative by the accelerations is symmetric; the C code then gets the
-        derivatives of the accelerations from these. None: from `evaluate`
+        equations of motion, whose derivative by the accelerations is symmetric; the C code then computes the
+        derivatives of the accelerations from those of the residuals. None: from `evaluate`
     is_time_dependent : whether outputs change with time at constant inputs
     find_event_times : function, tabulated joint -> times [s] at which outputs have a kink, numbers or
         symbols; None: there are none
@@ -176,7 +178,7 @@ class Model:
     tabulate: Callable[..., TabulatedJoint]
     inputs: Sequence[Variable]
     outputs: Sequence[Variable]
-    evaluate: Callable[..., Outputs]
+    evaluate: Callable[..., OutputValues]
     validity_limits: Sequence[ValidityLimit]
     ramp: LoadRamp
     dependencies: Mapping[str, Sequence[str]]
@@ -187,7 +189,7 @@ class Model:
     is_time_dependent: bool = False
     find_event_times: Callable[..., Sequence[Number]] | None = None
     initial_history: Callable[..., History] | None = None
-    advance: Callable[..., tuple[Outputs, History]] | None = None
+    advance: Callable[..., tuple[OutputValues, History]] | None = None
     load_cycle: LoadCycle | None = None
     make_variant: "Callable[[Model, Any], Model] | None" = None
     alias: str = ""
@@ -211,7 +213,7 @@ class Model:
         return bodies <= output_index < self.state_count + bodies
 
     def parameter_fields(self) -> dict[str, Any]:
-        """{structured name: field} of the numbers and booleans that the FMU exposes as parameters."""
+        """Declared fields {structured name: field} of the parameters that the FMU exposes."""
         return {
             name: item
             for name, item in flatten_fields(self.parameter_class)
@@ -220,37 +222,42 @@ class Model:
             and not isinstance(item.metadata.get("allowed", (0,))[0], str)
         }
 
-    def with_parameters(self, joint_name: str, parameters: object) -> "Model":
-        """Model for a parameter set, which may have another law, and additional outputs.
+    def with_parameters(self, joint_name: str, parameter_set: object) -> "Model":
+        """Copy of the model for a parameter set, which may have another law and add outputs.
 
-        joint_name : joint of the parameter set; raises ValueError if the model is of another joint
+        joint_name : kind of joint of the parameter set
+
+        Raises ValueError if the model is of another kind of joint.
         """
         if joint_name != self.joint:
             raise ValueError(
-                f"{self.name}: the parameter file is of a {joint_name!r}, expected a {self.joint!r}"
+                f"{self.name}: the parameter file has joint = {joint_name!r}, expected joint = {self.joint!r}"
             )
-        model = replace(self, parameter_class=type(parameters))
+        model = replace(self, parameter_class=type(parameter_set))
         if self.make_variant:
-            model = replace(self.make_variant(model, parameters), make_variant=None)
+            model = replace(self.make_variant(model, parameter_set), make_variant=None)
         return model
 
     def with_load_range(self, tabulated_joint: TabulatedJoint, start_values: VariableValues) -> "Model":
-        """Model whose load ramp, and load cycle of the same input, are scaled to a joint and start values."""
+        """Copy of the model with load ramp and cycle scaled to a joint's load range and start values.
+
+        The load cycle is scaled if it has the same input as the ramp.
+        """
         ramp, loop = self.ramp, self.load_cycle
-        if ramp.find_range is None:
+        if ramp.find_load_range is None:
             return self
-        onset, end = (float(x) for x in ramp.find_range(tabulated_joint, start_values))
+        onset, end = (float(x) for x in ramp.find_load_range(tabulated_joint, start_values))
         end = max(end, start_values[ramp.input_name])
         scale = end / ramp.end_value
         if loop and loop.input_name == ramp.input_name:
-            loop = replace(loop, amplitude=scale * loop.amplitude)
+            loop = replace(loop, input_amplitude=scale * loop.input_amplitude)
         ramp = replace(ramp, onset_value=max(onset, 0.0), end_value=end, value_step=scale * ramp.value_step)
         return replace(self, ramp=ramp, load_cycle=loop)
 
     def find_warnings(
         self, tabulated_joint: TabulatedJoint, variable_values: VariableValues
     ) -> dict[int, str]:
-        """{index of the validity limit: warning} for values of inputs and outputs outside their intervals."""
+        """Warnings {index of the validity limit: text} for variables outside their intervals."""
         units = {v.name: "" if v.unit == "1" else f" {v.unit}" for v in (*self.inputs, *self.outputs)}
         messages = {}
         for i, o in enumerate(self.validity_limits):

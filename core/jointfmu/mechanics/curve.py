@@ -1,4 +1,4 @@
-"""Tabulated monotone force laws: load over displacement, with exact stiffness and energy.
+"""Tabulated monotone force laws: load as a function of displacement, with exact stiffness and energy.
 
 A table is a quintic Hermite spline through load, stiffness and derivative of the stiffness at the nodes. The
 load is twice continuously differentiable. Stiffness and energy are its exact derivative and integral.
@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..contact.interface import (
-    MAX_ITERATIONS,
+    MAX_INVERSION_ITERATIONS,
     NEWTON_TOLERANCE,
-    ONE_SIDED_OFFSET,
+    ONE_SIDED_DERIVATIVE_OFFSET,
     InterfaceLaw,
     get_checked_spot_distribution,
     solve_largest_spot,
@@ -23,20 +23,22 @@ from ..contact.interface import (
 from ..contact.powerlaw import SpotDistribution
 from ..quantity import Array, Number
 
-MAX_ERROR = 1e-8
+MAX_INTERPOLATION_ERROR = 1e-8
 """Largest allowed relative interpolation error of load and stiffness in a table [1]."""
 MAX_TABLE_NODES = 2600
 """Largest number of nodes of a table [1], limited by the memory of an FMU instance."""
 MAX_STEP_COUNT_FACTOR = 16
 """Largest number of steps of a table over its initial number [1]; ratios 1, 2, 4, ... are tried."""
 MIN_STEPS_PER_LOG_AREA = 12
-"""Initial number of steps of the approach curve per unit of log-area [1], doubled until it is accurate."""
+"""Initial number of steps of the pressure-approach curve per unit of the logarithm of the area of the largest
+spot [1]; it is doubled until the curve is accurate."""
 MIN_STEP_FACTOR_BETWEEN_KINKS = 2
 """Smallest number of steps between two kinks of a law, over the number per unit of log-area [1]."""
-CLOSING_STEPS = 48
+CONTACT_CLOSING_STEPS = 48
 """Number of steps of the table while the contact closes [1]: from first contact to some elastic spots."""
-GAUSS_RULE = np.polynomial.legendre.leggauss(5)
-"""Nodes and weights of the Gauss-Legendre quadrature of dp/k."""
+GAUSS_NODES_AND_WEIGHTS = np.polynomial.legendre.leggauss(5)
+"""Nodes and weights of the Gauss-Legendre quadrature for the approach, the integral of d(pressure)/stiffness.
+"""
 _HERMITE_TO_POLYNOMIAL = np.array(  # (y0, s0, c0, y1, s1, c1) on [0, 1] -> coefficients of 1, t, ... t^5
     [
         [1, 0, 0, 0, 0, 0],
@@ -53,7 +55,7 @@ _MONOMIAL_MEANS = 1.0 / np.arange(1.0, 7.0)
 
 @dataclass(frozen=True, slots=True)
 class Curve:
-    """Tabulated monotone load over displacement; linear extrapolation with the end tangents.
+    """Table of a monotone load as a function of displacement; linear extrapolation with the end tangents.
 
     displacement, load, stiffness : (n) values at the nodes, in any consistent units
     stiffness_slope_start, stiffness_slope_end : (n - 1) derivative of the stiffness at the start and at the
@@ -89,11 +91,11 @@ class Curve:
         object.__setattr__(self, "_node_energies", np.concatenate([[0.0], np.cumsum(areas)]))
 
     @property
-    def closing_end_load(self) -> float:
-        """Load at zero displacement.
+    def closing_end_pressure(self) -> float:
+        """Pressure at approach 0, where the closing of the contact ends, of a pressure-approach curve.
 
-        The law of rough contact begins there, with a load above 0. At negative displacement, the table has
-        a smooth transition from load 0 to this load.
+        The law of rough contact begins there, with a pressure above 0. At negative approach, the table has
+        a smooth transition from pressure 0 to this pressure.
         """
         return float(self.load[np.searchsorted(self.displacement, 0.0)])
 
@@ -102,8 +104,8 @@ class Curve:
         """Displacement and load at the end of the table."""
         return float(self.displacement[-1]), float(self.load[-1])
 
-    def derivatives(self, displacement: ArrayLike, order: int = 1) -> list[Array]:
-        """Load and its derivatives up to `order` at displacements (...): order + 1 arrays (...)."""
+    def derivatives(self, displacement: ArrayLike, max_derivative_order: int = 1) -> list[Array]:
+        """Load, and its derivatives up to an order, at displacements (...): order + 1 arrays (...)."""
         displacement = np.asarray(displacement, dtype=np.float64)
         nodes = self.displacement
         i = _find_segment(nodes, displacement)
@@ -112,16 +114,16 @@ class Curve:
         h = nodes[i + 1] - first
         t = (inside - first) / h
         top, *rest = self._coefficients[::-1]
-        out = [top[i], *(np.zeros(displacement.shape) for _ in range(order))]
+        out = [top[i], *(np.zeros(displacement.shape) for _ in range(max_derivative_order))]
         for coefficient in rest:  # Horner's scheme for the load and its derivatives divided by factorials
-            for n in range(order, 0, -1):
+            for n in range(max_derivative_order, 0, -1):
                 out[n] = out[n] * t + out[n - 1]
             out[0] = out[0] * t + coefficient[i]
         out = [value * (factorial(n) / h**n) for n, value in enumerate(out)]
         is_outside = displacement != inside
         if not is_outside.any():
             return out
-        slope = out[1] if order else self.derivatives(inside, 1)[1]
+        slope = out[1] if max_derivative_order else self.derivatives(inside, 1)[1]
         out[0] = out[0] + (displacement - inside) * slope
         return out[:2] + [np.where(is_outside, 0.0, value) for value in out[2:]]
 
@@ -145,18 +147,18 @@ class Curve:
         load, stiffness = self.derivatives(inside, 1)
         return np.asarray(energy + excess * (load + 0.5 * excess * stiffness))
 
-    def odd_inverse(self, load: ArrayLike) -> Array:
+    def odd_inverse(self, target_load: ArrayLike) -> Array:
         """Displacement (...) at loads (...) of either sign, for an odd curve tabulated from zero on."""
-        y = np.asarray(load, dtype=np.float64)
+        y = np.asarray(target_load, dtype=np.float64)
         return np.asarray(np.copysign(self.inverse(np.abs(y)), y))
 
-    def inverse(self, load: ArrayLike) -> Array:
+    def inverse(self, target_load: ArrayLike) -> Array:
         """Displacement (...) at loads (...), accurate to round-off.
 
         Safeguarded Newton iteration inside the segment. Loads at or below the first node give the first node,
         if the stiffness there is zero.
         """
-        y = np.asarray(load, dtype=np.float64)
+        y = np.asarray(target_load, dtype=np.float64)
         nodes, displacements = self.load, self.displacement
         i = _find_segment(nodes, y)
         inside = np.minimum(np.maximum(y, nodes[0]), nodes[-1])
@@ -164,7 +166,7 @@ class Curve:
         low, high = np.zeros(y.shape), np.ones(y.shape)
         t = (inside - nodes[i]) / (nodes[i + 1] - nodes[i])
         top, *rest = self._coefficients[::-1, i]
-        for _ in range(MAX_ITERATIONS):
+        for _ in range(MAX_INVERSION_ITERATIONS):
             value, slope = top, np.zeros(y.shape)
             for coefficient in rest:
                 slope = slope * t + value
@@ -187,19 +189,21 @@ class Curve:
         return np.asarray(x + np.where(flat, 0.0, (y - inside) / np.where(flat, 1.0, edge)))
 
 
-def _find_segment(node_abscissas: Array, abscissas: Array) -> NDArray[np.intp]:
+def _find_segment(node_abscissas: Array, query_abscissas: Array) -> NDArray[np.intp]:
     """Index (...) of the segment of nodes (n) that contains an abscissa (...), or of the nearest segment."""
     return np.minimum(
-        np.maximum(node_abscissas.searchsorted(abscissas, side="right") - 1, 0), node_abscissas.size - 2
+        np.maximum(node_abscissas.searchsorted(query_abscissas, side="right") - 1, 0), node_abscissas.size - 2
     )
 
 
-def assemble_curve(curve_pieces: list[tuple[Array, Array, Array, Array]], data_error: float = 0.0) -> Curve:
+def assemble_curve(
+    curve_pieces: list[tuple[Array, Array, Array, Array]], relative_data_error: float = 0.0
+) -> Curve:
     """Join pieces of a curve; estimate the interpolation error.
 
     curve_pieces : (displacement, load, stiffness, derivative of the stiffness), arrays of an odd number of
         nodes. The last node of a piece is the first of the next. The derivative may jump from piece to piece.
-    data_error   : [1] relative error of the data themselves
+    relative_data_error : [1] relative error of the data themselves
 
     The error is half the largest relative deviation from the curve through every second node: the order of
     convergence is at least one, also at a kink. It is measured at the quarter points of the segments, because
@@ -209,7 +213,7 @@ def assemble_curve(curve_pieces: list[tuple[Array, Array, Array, Array]], data_e
     fine, coarse = _join_curve_pieces(curve_pieces), _join_curve_pieces(every_second)  # type: ignore[arg-type]
     nodes = fine.displacement
     points = np.concatenate([nodes[:-1] + fraction * np.diff(nodes) for fraction in (0.25, 0.5, 0.75)])
-    worst = data_error
+    worst = relative_data_error
     for value, coarse_value in zip(fine.derivatives(points), coarse.derivatives(points), strict=True):
         loaded = value > 0.0
         worst = max(worst, float(np.max(np.abs(coarse_value - value)[loaded] / value[loaded])) / 2.0)
@@ -219,7 +223,7 @@ def assemble_curve(curve_pieces: list[tuple[Array, Array, Array, Array]], data_e
 
 
 def refine_curve(tabulate_curve: Callable[[int], Curve], initial_step_count: int) -> Curve:
-    """Refine a table until its error is at most MAX_ERROR.
+    """Refine a table until its error is at most MAX_INTERPOLATION_ERROR.
 
     tabulate_curve     : function, number of steps -> table
     initial_step_count : initial number of steps, doubled up to MAX_STEP_COUNT_FACTOR times as many
@@ -232,15 +236,15 @@ def refine_curve(tabulate_curve: Callable[[int], Curve], initial_step_count: int
         factor *= 2
         if curve.load.size > MAX_TABLE_NODES:
             raise RuntimeError(
-                f"the table needs more than {MAX_TABLE_NODES} nodes: "
-                "the law is not smooth enough with these parameters"
+                f"the table of the law needs more than {MAX_TABLE_NODES} nodes: the law is not smooth "
+                "enough with these parameters; check them for extreme values"
             )
-        if curve.interpolation_error <= MAX_ERROR:
+        if curve.interpolation_error <= MAX_INTERPOLATION_ERROR:
             return curve
     raise RuntimeError(
-        f"the table of {curve.load.size} nodes has an interpolation error of "
-        f"{curve.interpolation_error:.2g}, "
-        f"allowed is {MAX_ERROR:g}: the law is not smooth enough with these parameters"
+        f"the table of the law has an interpolation error of {curve.interpolation_error:.2g} with "
+        f"{curve.load.size} nodes, allowed is {MAX_INTERPOLATION_ERROR:g}: the law is not smooth enough "
+        "with these parameters; check them for extreme values"
     )
 
 
@@ -259,11 +263,15 @@ CLOSING_END_OVER_PLASTIC_SPOT_AREA = 20.0
 
 
 def closing_pressure(
-    p: Number, k: Number, d2p: Number, displacement_over_closing_length: Number
+    end_pressure: Number,
+    end_stiffness: Number,
+    end_stiffness_slope: Number,
+    displacement_over_closing_length: Number,
 ) -> tuple[Number, Number, Number, Number]:
-    """Pressure over approach while the contact closes: from first contact (p = 0, k = 0) to a point (p, k).
+    """Pressure as a function of approach while the contact closes: from zero pressure to the contact law.
 
-    p, k, d2p : pressure [Pa], stiffness [N/m3] and its derivative [N/m4] at the end of the closing
+    end_pressure, end_stiffness, end_stiffness_slope : pressure p [Pa], stiffness k = dp/d(approach) [N/m3]
+        and its derivative [N/m4] at the end of the closing, where the contact law begins
     displacement_over_closing_length : z (...) [1] displacement from first contact over the length of the
         closing, 0 to 1
 
@@ -272,47 +280,55 @@ def closing_pressure(
     Interface laws have zero stiffness while all spots are plastic, at a finite pressure. The approach, the
     integral of dp/k, would start at minus infinity. So the law is used only above the point where the largest
     spot is CLOSING_END_OVER_PLASTIC_SPOT_AREA times the largest plastic spot. Below, the pressure is p z^3 (a
-    + b z + c z^2) over a length n p/k, twice continuously differentiable at both ends. n is 4. If k grows
-    with a power of p below 0.75, this length would make the pressure negative; n is then the largest value
-    that does not.
+    + b z + c z^2) along a length n p/k. The coefficients a, b, c make it twice continuously differentiable at
+    both ends. n is 4. If k grows with a power of p below 0.75, this length would make the pressure negative;
+    n is then the largest value that does not.
     """
-    reach = closing_length_ratio(p, k, d2p)
-    length = reach * p / k
-    c = 0.5 * d2p * length**2 / p - 3.0 * reach + 6.0
+    reach = closing_length_ratio(end_pressure, end_stiffness, end_stiffness_slope)
+    length = reach * end_pressure / end_stiffness
+    c = 0.5 * end_stiffness_slope * length**2 / end_pressure - 3.0 * reach + 6.0
     a, b = 4.0 - reach + c, reach - 3.0 - 2.0 * c
     z = displacement_over_closing_length
-    load = p * z**3 * (a + b * z + c * z**2)
-    stiffness = p / length * z**2 * (3.0 * a + 4.0 * b * z + 5.0 * c * z**2)
-    slope = p / length**2 * z * (6.0 * a + 12.0 * b * z + 20.0 * c * z**2)
+    load = end_pressure * z**3 * (a + b * z + c * z**2)
+    stiffness = end_pressure / length * z**2 * (3.0 * a + 4.0 * b * z + 5.0 * c * z**2)
+    slope = end_pressure / length**2 * z * (6.0 * a + 12.0 * b * z + 20.0 * c * z**2)
     return (z - 1.0) * length, load, stiffness, slope
 
 
-def closing_length_ratio(p: Number, k: Number, d2p: Number) -> Number:
-    """Length of the closing of a contact over p/k at its end [1]: the number n of `closing_pressure`."""
-    return 40.0 / (8.0 + np.sqrt(np.maximum(64.0 - 80.0 * d2p * p / k**2, 4.0)))
+def closing_length_ratio(end_pressure: Number, end_stiffness: Number, end_stiffness_slope: Number) -> Number:
+    """Length of the closing of a contact [1], divided by pressure over stiffness at its end.
+
+    Closing: range of the approach from zero pressure to the point where the contact law begins. Pressure
+    [Pa], stiffness [N/m3] and its derivative [N/m4] are those at this point, see `closing_pressure`.
+    """
+    return 40.0 / (
+        8.0 + np.sqrt(np.maximum(64.0 - 80.0 * end_stiffness_slope * end_pressure / end_stiffness**2, 4.0))
+    )
 
 
-def tabulate_approach(law: InterfaceLaw) -> Curve:
-    """Table of the pressure [Pa] over the approach [m] of an interface; the approach is the integral of dp/k.
+def tabulate_approach(interface_law: InterfaceLaw) -> Curve:
+    """Table of the pressure p [Pa] of an interface as a function of the approach [m].
 
-    Zero approach is the end of the closing of the contact; the closing has negative approaches. Beyond, the
-    nodes are spaced in the log-area u of the largest spot, because load and stiffness are explicit in u. The
-    last node is at the largest pressure of the law. Each step is integrated with five Gauss-Legendre
-    nodes.
+    The approach is the integral of dp/k, with the stiffness k [N/m3] of the interface law at the pressure p.
+    Each step is integrated with five Gauss-Legendre nodes. The law begins at zero approach. At negative
+    approach, the pressure rises from zero as `closing_pressure` computes it. The nodes are spaced evenly in
+    the logarithm u of the area of the largest spot, because load and stiffness are explicit in u. The last
+    node is at the largest pressure of the law.
 
     Raises
     ------
     ValueError   : all spots are plastic (no stiffness) at every pressure up to the largest
     RuntimeError : the table does not reach the accuracy, see `refine_curve`
     """
-    spots, area = get_checked_spot_distribution(law), law.A_0
+    spots, area = get_checked_spot_distribution(interface_law), interface_law.A_0
     first = float(spots.stiffness_onset_log_area + np.log(CLOSING_END_OVER_PLASTIC_SPOT_AREA))
-    last = float(solve_largest_spot(law, law.max_pressure))
+    last = float(solve_largest_spot(interface_law, interface_law.max_pressure))
     if not last > first:
         p = float(spots.sum_over_spots("load", first)) / area
         raise ValueError(
-            f"the law has no stiffness below {p:.3g} Pa, above the hardness {float(law.max_pressure):.3g} "
-            "Pa: the surface (D, G) leaves only plastic spots"
+            f"at every pressure up to the hardness, {float(interface_law.max_pressure):.3g} Pa, all contact "
+            f"spots are plastic, so the interface has no stiffness (it would start at {p:.3g} Pa); check "
+            "surface.D and surface.G (G in m)"
         )
     return refine_curve(
         lambda steps: _tabulate_between_log_areas(spots, area, first, last, steps), MIN_STEPS_PER_LOG_AREA
@@ -326,10 +342,10 @@ def _tabulate_between_log_areas(
     end_log_area: float,
     steps_per_log_area: int,
 ) -> Curve:
-    """Table of pressure over approach: first contact, then the law between two areas of the largest spot.
+    """Table of pressure as a function of approach: closing, then the law between two largest-spot areas.
 
-    start_log_area, end_log_area : natural logarithm of the areas [m2] of the largest spot
-    steps_per_log_area : number of steps per unit of log-area
+    start_log_area, end_log_area : natural logarithm of the area [m2] of the largest spot, at both ends
+    steps_per_log_area : number of steps per unit of this logarithm
     """
     ends = [
         start_log_area,
@@ -339,24 +355,26 @@ def _tabulate_between_log_areas(
     pieces, offset = [], 0.0
     for start, end in pairwise(ends):
         least = (
-            MIN_STEP_FACTOR_BETWEEN_KINKS * steps_per_log_area if start >= spot_distribution.first_kink else 2
+            MIN_STEP_FACTOR_BETWEEN_KINKS * steps_per_log_area
+            if start >= spot_distribution.first_kink_log_area
+            else 2
         )
         n = max(2 * int(np.ceil(0.5 * steps_per_log_area * (end - start))), least)
         u = np.linspace(start, end, n + 1)
         half = 0.5 * (u[1] - u[0])
-        inner = u[:-1, None] + half * (1.0 + GAUSS_RULE[0])
+        inner = u[:-1, None] + half * (1.0 + GAUSS_NODES_AND_WEIGHTS[0])
         increments = (
             half
             * (
                 spot_distribution.sum_over_spots_derivative("load", inner)
                 / spot_distribution.sum_over_spots("normal", inner)
             )
-            @ GAUSS_RULE[1]
+            @ GAUSS_NODES_AND_WEIGHTS[1]
         )
         x = offset + np.concatenate([[0.0], np.cumsum(increments)])
         offset = x[-1]
         side = np.clip(
-            u, start + ONE_SIDED_OFFSET, end - ONE_SIDED_OFFSET
+            u, start + ONE_SIDED_DERIVATIVE_OFFSET, end - ONE_SIDED_DERIVATIVE_OFFSET
         )  # one-sided derivative where a regime ends
         k = spot_distribution.sum_over_spots("normal", u) / nominal_area
         bend = (
@@ -366,4 +384,6 @@ def _tabulate_between_log_areas(
         )
         pieces.append((x, spot_distribution.sum_over_spots("load", u) / nominal_area, k, bend))
     _, p, k, bend = (float(column[0]) for column in pieces[0])
-    return assemble_curve([closing_pressure(p, k, bend, np.linspace(0.0, 1.0, CLOSING_STEPS + 1)), *pieces])
+    return assemble_curve(
+        [closing_pressure(p, k, bend, np.linspace(0.0, 1.0, CONTACT_CLOSING_STEPS + 1)), *pieces]
+    )

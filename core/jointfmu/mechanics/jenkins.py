@@ -21,48 +21,57 @@ AT_LIMIT_TOLERANCE = 1e-12
 """Relative distance below the limit [1] at which a force counts as at the limit."""
 MIN_DENOMINATOR = 1e-200
 """Smallest denominator: replaces 0 in divisions by powers of forces and squared displacements."""
-HERMITE_RULE_FACTOR = 1.0 / 12.0
+HERMITE_RULE_WEIGHT = 1.0 / 12.0
 """Weight [1] of the end derivatives in the corrected trapezoidal rule (Hermite's rule)."""
-MAX_INVERSE_LIMIT = 1e30
+MAX_INVERSE_FRICTION_LIMIT = 1e30
 """Largest value of 1/limit, for limits near zero."""
 
 
 def elastic_predictor(
-    force: Vector, retention: Number, secant_stiffness: Number, displacement: Vector
+    start_force: Vector, retained_fraction: Number, secant_stiffness: Number, displacement_increment: Vector
 ) -> Vector:
-    """Elastic predictor of the friction force, for a slider that sticks: retention q + secant_stiffness u.
+    """Elastic predictor of the friction force, for a slider that sticks.
 
-    force            : q, one or two components, at the start of the increment
-    retention        : fraction [1] of q that remains while the normal load changes
-    secant_stiffness : stiffness for the increment
-    displacement     : u, displacement increment, as many components as q
+    Its components are retained_fraction q + secant_stiffness u.
+
+    start_force            : q, one or two components, at the start of the increment
+    retained_fraction      : fraction [1] of q that remains while the normal load changes
+    secant_stiffness       : stiffness for the increment
+    displacement_increment : u, as many components as q
     """
-    return [retention * q + secant_stiffness * u for q, u in zip(force, displacement, strict=True)]
+    return [
+        retained_fraction * q + secant_stiffness * u
+        for q, u in zip(start_force, displacement_increment, strict=True)
+    ]
 
 
-def yield_function(force: Vector, friction_limit: Number) -> Number:
+def yield_function(friction_force: Vector, friction_limit: Number) -> Number:
     """Yield function: positive if the force exceeds the limit.
 
     |q| - limit along one direction; |q|^2 - (1 + ROUND_OFF_TOLERANCE) limit^2 in a plane.
     """
-    if len(force) == 1:
-        return np.abs(force[0]) - friction_limit
+    if len(friction_force) == 1:
+        return np.abs(friction_force[0]) - friction_limit
     return (
-        force[0] * force[0]
-        + force[1] * force[1]
+        friction_force[0] * friction_force[0]
+        + friction_force[1] * friction_force[1]
         - (1.0 + ROUND_OFF_TOLERANCE) * (friction_limit * friction_limit)
     )
 
 
-def slip_limit_function(force: Vector, friction_limit: Number) -> Number:
+def slip_limit_function(friction_force: Vector, friction_limit: Number) -> Number:
     """Function of a force, positive at the friction limit: further motion in its direction causes slip.
 
     |q| - limit along one direction; |q|^2 - limit^2 in a plane, with the limit reduced by AT_LIMIT_TOLERANCE.
     """
     reduced_limit = (1.0 - AT_LIMIT_TOLERANCE) * friction_limit
-    if len(force) == 1:
-        return np.abs(force[0]) - reduced_limit
-    return force[0] * force[0] + force[1] * force[1] - reduced_limit * reduced_limit
+    if len(friction_force) == 1:
+        return np.abs(friction_force[0]) - reduced_limit
+    return (
+        friction_force[0] * friction_force[0]
+        + friction_force[1] * friction_force[1]
+        - reduced_limit * reduced_limit
+    )
 
 
 _MappingResult = tuple[Vector, Vector, Number, Number]
@@ -75,7 +84,8 @@ class ReturnMapping:
 
     force             : friction force, one or two components
     tangent           : tangent stiffness for a further increment. One direction: along and across it. Plane:
-        components xx, xy, yy of K (1 - n n) for a slider at its limit, n the direction of its force; else K.
+        components xx, xy, yy of K (1 - n n) for a slider at its limit, with the stiffness K of its spring and
+        the unit vector n of its force; else of K.
     dissipated_energy : energy dissipated in the increment
     slip_force        : force of the elastic predictor above the friction limit; 0 if the slider sticks
     """
@@ -87,63 +97,74 @@ class ReturnMapping:
 
 
 def return_map(
-    force: Vector,
-    retention: Number,
+    start_force: Vector,
+    retained_fraction: Number,
     secant_stiffness: Number,
-    displacement: Vector,
-    limit_start: Number,
-    limit_end: Number,
-    stiffness: Number,
-    compliance: Number,
+    displacement_increment: Vector,
+    start_limit: Number,
+    end_limit: Number,
+    spring_stiffness: Number,
+    spring_compliance: Number,
 ) -> ReturnMapping:
     """Return mapping of a slider for one displacement increment.
 
-    force                  : friction force at the start
-    retention, secant_stiffness, displacement : see `elastic_predictor`
-    limit_start, limit_end : friction limit at the start and at the end of the increment
-    stiffness              : K at the end
-    compliance             : 1/K, 0 without springs
+    start_force            : friction force at the start
+    retained_fraction, secant_stiffness, displacement_increment : see `elastic_predictor`
+    start_limit, end_limit : friction limit at the start and at the end of the increment
+    spring_stiffness       : K at the end
+    spring_compliance      : 1/K, 0 without springs
 
     One direction: the force is limited to the limit. The loss is the mean limit during slip times the slip
     distance, exact for constant K. Plane: while the slider slips, its force turns towards the displacement.
     Under constant load tan(angle/2) between both decreases as exp(-K distance/limit) (Krieg and Krieg 1977).
     Angle and loss are accurate to third order in the distance, and exact if the force does not turn.
     """
-    predictor = elastic_predictor(force, retention, secant_stiffness, displacement)
+    predictor = elastic_predictor(start_force, retained_fraction, secant_stiffness, displacement_increment)
     if len(predictor) == 1:
-        new_force, tangent, slip, mean = _return_map_1d(force, predictor, limit_start, limit_end, stiffness)
+        new_force, tangent, slip, mean = _return_map_1d(
+            start_force, predictor, start_limit, end_limit, spring_stiffness
+        )
     else:
         new_force, tangent, slip, mean = _return_map_2d(
-            force, predictor, displacement, secant_stiffness, (limit_start, limit_end), stiffness
+            start_force,
+            predictor,
+            displacement_increment,
+            secant_stiffness,
+            (start_limit, end_limit),
+            spring_stiffness,
         )
-    return ReturnMapping(new_force, tangent, mean * (slip * compliance), slip)
+    return ReturnMapping(new_force, tangent, mean * (slip * spring_compliance), slip)
 
 
-def project_to_limit(force: Number, friction_limit: Number) -> Number:
+def project_to_limit(friction_force: Number, friction_limit: Number) -> Number:
     """Clip a force along one direction to the range from -limit to limit."""
-    return np.minimum(np.maximum(force, -friction_limit), friction_limit)
+    return np.minimum(np.maximum(friction_force, -friction_limit), friction_limit)
 
 
 def _return_map_1d(
-    force: Vector, predictor: Vector, limit_start: Number, limit_end: Number, stiffness: Number
+    start_force: Vector,
+    predicted_force: Vector,
+    start_limit: Number,
+    end_limit: Number,
+    spring_stiffness: Number,
 ) -> _MappingResult:
     """Return mapping along one direction: the predictor is clipped to the friction limit."""
-    new_force = project_to_limit(predictor[0], limit_end)
-    slip = np.abs(predictor[0] - new_force)
+    new_force = project_to_limit(predicted_force[0], end_limit)
+    slip = np.abs(predicted_force[0] - new_force)
     slips = slip > 0.0
-    margin = np.maximum(limit_start - select(predictor[0] < 0.0, -force[0], force[0]), 0.0)
+    margin = np.maximum(start_limit - select(predicted_force[0] < 0.0, -start_force[0], start_force[0]), 0.0)
     onset = margin / np.maximum(margin + slip, MIN_DENOMINATOR)
-    mean = 0.5 * (limit_end + limit_start + onset * (limit_end - limit_start))
-    return [new_force], [select(slips, 0.0, stiffness), stiffness], slip, mean
+    mean = 0.5 * (end_limit + start_limit + onset * (end_limit - start_limit))
+    return [new_force], [select(slips, 0.0, spring_stiffness), spring_stiffness], slip, mean
 
 
 def _return_map_2d(
-    force: Vector,
-    predictor: Vector,
-    displacement: Vector,
+    start_force: Vector,
+    predicted_force: Vector,
+    displacement_increment: Vector,
     secant_stiffness: Number,
     friction_limits: Vector,
-    stiffness: Number,
+    spring_stiffness: Number,
 ) -> _MappingResult:
     """Return mapping in a plane: radial return of the predictor, corrected for the rotation of the force.
 
@@ -155,17 +176,29 @@ def _return_map_2d(
     """
     limit_start, limit = friction_limits
     distance = np.sqrt(
-        np.maximum(displacement[0] * displacement[0] + displacement[1] * displacement[1], MIN_DENOMINATOR)
+        np.maximum(
+            displacement_increment[0] * displacement_increment[0]
+            + displacement_increment[1] * displacement_increment[1],
+            MIN_DENOMINATOR,
+        )
     )
-    e_x, e_y = displacement[0] / distance, displacement[1] / distance
-    square, squared = predictor[0] * predictor[0] + predictor[1] * predictor[1], limit * limit
+    e_x, e_y = displacement_increment[0] / distance, displacement_increment[1] / distance
+    square, squared = (
+        predicted_force[0] * predicted_force[0] + predicted_force[1] * predicted_force[1],
+        limit * limit,
+    )
     largest = np.maximum(np.maximum(squared, square), MIN_DENOMINATOR)
     size = np.sqrt(largest)
-    slips, out = yield_function(predictor, limit) > 0.0, size - limit
-    margin = np.maximum(limit_start * size - (force[0] * predictor[0] + force[1] * predictor[1]), 0.0)
+    slips, out = yield_function(predicted_force, limit) > 0.0, size - limit
+    margin = np.maximum(
+        limit_start * size - (start_force[0] * predicted_force[0] + start_force[1] * predicted_force[1]), 0.0
+    )
     sum_ = margin + out * size
     inverse = 1.0 / np.maximum(limit * sum_, MIN_DENOMINATOR)
-    per_limit, share = np.minimum(inverse * sum_, MAX_INVERSE_LIMIT), inverse * (limit * (out * size))
+    per_limit, share = (
+        np.minimum(inverse * sum_, MAX_INVERSE_FRICTION_LIMIT),
+        inverse * (limit * (out * size)),
+    )
     slip_angle = share * (secant_stiffness * distance)
     start_square = np.minimum(np.maximum(limit_start * limit_start, squared), largest)
     decrease = start_square - squared  # the limit decreased: slip starts from the reduced limit
@@ -174,9 +207,9 @@ def _return_map_2d(
     turn_factor = (
         0.25 * (decrease * squared * start_square + (largest - start_square) * shrinks) * per_shrinks
     )
-    correction_factor = turn_factor - HERMITE_RULE_FACTOR * shrinks * per_shrinks * (slip_angle * slip_angle)
+    correction_factor = turn_factor - HERMITE_RULE_WEIGHT * shrinks * per_shrinks * (slip_angle * slip_angle)
     correction = select(slips, slip_angle * correction_factor, 0.0)
-    corrected = [q + correction * e for q, e in zip(predictor, (e_x, e_y), strict=True)]
+    corrected = [q + correction * e for q, e in zip(predicted_force, (e_x, e_y), strict=True)]
     size2 = np.maximum(corrected[0] * corrected[0] + corrected[1] * corrected[1], MIN_DENOMINATOR)
     per_size = np.sqrt(size2) / size2
     n = [per_size * q for q in corrected]
@@ -186,15 +219,15 @@ def _return_map_2d(
         rotation
         * rotation
         * np.maximum(1.0 - squared * (per_size * per_size), 0.0)
-        * (HERMITE_RULE_FACTOR * per_limit)
+        * (HERMITE_RULE_WEIGHT * per_limit)
     )
-    slip_stiffness = select(slip_limit_function(predictor, limit) > 0.0, stiffness, 0.0)
+    slip_stiffness = select(slip_limit_function(predicted_force, limit) > 0.0, spring_stiffness, 0.0)
     tangent = [
-        stiffness - slip_stiffness * n[0] * n[0],
+        spring_stiffness - slip_stiffness * n[0] * n[0],
         -slip_stiffness * n[0] * n[1],
-        stiffness - slip_stiffness * n[1] * n[1],
+        spring_stiffness - slip_stiffness * n[1] * n[1],
     ]
-    new_force = [select(slips, limit * m, q) for m, q in zip(n, predictor, strict=True)]
+    new_force = [select(slips, limit * m, q) for m, q in zip(n, predicted_force, strict=True)]
     mean = 0.5 * (limit_start + limit + (1.0 - share) * (limit - limit_start))
     return new_force, tangent, select(slips, out + hermite, 0.0), mean
 
@@ -206,7 +239,7 @@ class SliderUpdate:
     force             : (..., n) friction force of each slider along one direction, (..., 2, n) in a plane
     dissipated_energy : (...) energy dissipated in the increment
     tangent           : (...) tangent stiffness of their sum, see `ReturnMapping`; for a foundation (..., 6):
-        xx, xy, yy, xt, yt, tt, with t the displacement around the centre of the patch
+        xx, xy, yy, xr, yr, rr, with r the displacement around the centre of the patch
     """
 
     force: Array
@@ -229,7 +262,7 @@ class Sliders:
     stiffness: Array
 
     @property
-    def is_active(self) -> bool:
+    def has_friction(self) -> bool:
         """Whether any slider has stiffness."""
         return bool(np.any(self.stiffness > 0.0))
 
@@ -239,16 +272,23 @@ class Sliders:
         return np.asarray(compliance(self.stiffness))
 
     def advance_1d(
-        self, force: Array, displacement: ArrayLike, limit_start: Array, limit_end: Array
+        self, start_force: Array, displacement_increment: ArrayLike, start_limit: Array, end_limit: Array
     ) -> SliderUpdate:
         """Update the sliders for displacements (...) along one direction.
 
-        force                  : (..., n) at the start
-        limit_start, limit_end : (..., n) friction limits
+        start_force            : (..., n) friction force of each slider at the start
+        start_limit, end_limit : (..., n) friction limits
         """
-        increment = [np.asarray(displacement)[..., None]]
+        increment = [np.asarray(displacement_increment)[..., None]]
         mapping = return_map(
-            [force], 1.0, self.stiffness, increment, limit_start, limit_end, self.stiffness, self.compliance
+            [start_force],
+            1.0,
+            self.stiffness,
+            increment,
+            start_limit,
+            end_limit,
+            self.stiffness,
+            self.compliance,
         )
         return SliderUpdate(
             np.asarray(mapping.force[0]),
@@ -259,7 +299,7 @@ class Sliders:
     def follow_increments(self, displacement_increments: Array, friction_limit: Array) -> Array:
         """Total force (m) after each of m displacement increments along one direction, from the virgin state.
 
-        friction_limit : (n) constant friction limits
+        friction_limit : (n) constant friction limits of the n sliders
         """
         force, totals = np.zeros_like(friction_limit), np.empty(displacement_increments.size)
         for n, increment in enumerate(displacement_increments):
@@ -270,7 +310,7 @@ class Sliders:
         return totals
 
 
-def compliance(stiffness: Number) -> Number:
+def compliance(spring_stiffness: Number) -> Number:
     """Compliance 1/stiffness of springs, in the inverse unit of the stiffness; 0 where there is no spring."""
-    has_spring = stiffness > 0.0
-    return select(has_spring, 1.0 / select(has_spring, stiffness, 1.0), 0.0)
+    has_spring = spring_stiffness > 0.0
+    return select(has_spring, 1.0 / select(has_spring, spring_stiffness, 1.0), 0.0)

@@ -33,37 +33,47 @@ SMALL_CYCLE_FORCE_OVER_LOAD = 3e-2
 derivatives of the curve: differences of its loads would cancel."""
 GOLDEN_RATIO_CONJUGATE = 0.5 * (np.sqrt(5.0) - 1.0)
 """Golden ratio conjugate (sqrt(5) - 1)/2 [1]."""
-UNIFORM_DEVIATION = 1.0 / np.sqrt(12.0)
+UNIFORM_DISTRIBUTION_DEVIATION = 1.0 / np.sqrt(12.0)
 """Standard deviation of a uniform distribution over its range [1]."""
 
 
-HEIGHTS_BELOW_REFERENCE, SLIDER_HEIGHT_COUNT_ABOVE_REFERENCE = 10, 7
+HEIGHTS_BELOW_REFERENCE, HEIGHTS_ABOVE_REFERENCE = 10, 7
 """Number of slider heights below the reference approach, and between it and the end of the curve [1]."""
-FOUNDATION_SLIDERS = 2 * (HEIGHTS_BELOW_REFERENCE + SLIDER_HEIGHT_COUNT_ABOVE_REFERENCE + 2)
+FOUNDATION_SLIDER_COUNT = 2 * (HEIGHTS_BELOW_REFERENCE + HEIGHTS_ABOVE_REFERENCE + 2)
 """Number of sliders of a foundation with the heights of `slider_heights` [1]: two per height interval."""
-MIN_REFERENCE_OVER_END_LOAD, MAX_REFERENCE_OVER_END_LOAD, DEFAULT_REFERENCE_OVER_END_LOAD = 1e-5, 0.1, 1e-3
+MIN_REFERENCE_LOAD_OVER_END_LOAD, MAX_REFERENCE_LOAD_OVER_END_LOAD, DEFAULT_REFERENCE_LOAD_OVER_END_LOAD = (
+    1e-5,
+    0.1,
+    1e-3,
+)
 """Smallest and largest load at the reference approach, and load that replaces a smaller one, over the load at
 the end of the curve [1]."""
 
 
-def height_offsets(load: Array) -> Array:
-    """Offsets (n) [1] of the slider heights of n parallel foundations, chosen so that their errors cancel.
+def height_offsets(foundation_loads: Array) -> Array:
+    """Offsets (n) [1] by which n parallel foundations shift their slider heights, so that errors cancel.
 
-    load : (n) loads of the foundations, any unit. The offsets are multiples of the golden ratio modulo 1, in
-        descending order of the loads; equal loads keep their order.
+    A slider height is the approach at which the first springs of a slider touch. An offset between 0 and 1
+    moves all heights by a fraction of the step between them.
+
+    foundation_loads : (n) loads of the foundations, any unit
+
+    The offsets are multiples of the golden ratio modulo 1, in descending order of the loads; equal loads keep
+    their order.
     """
-    return np.asarray((rank_descending(load) * GOLDEN_RATIO_CONJUGATE + 0.5) % 1.0)
+    return np.asarray((rank_descending(foundation_loads) * GOLDEN_RATIO_CONJUGATE + 0.5) % 1.0)
 
 
 def slider_heights(
     pressure_curve: Curve, stated_reference_approach: ArrayLike, height_offset: ArrayLike
 ) -> Array:
-    """Heights (..., n) [m] that separate the sliders of foundations near a reference approach.
+    """Slider heights (..., h) [m] of foundations: approaches at which the first springs of sliders touch.
 
-    The heights are dense just below the reference approach, where the first springs slip, and near the first
-    contact, where the last springs slip.
+    The springs of a foundation touch one after the other, as the approach grows. Two sliders represent all
+    springs between two adjacent heights. The h heights are dense just below a reference approach, where the
+    first springs slip, and near the first contact, where the last springs slip.
 
-    pressure_curve            : pressure over approach
+    pressure_curve            : pressure [Pa] as a function of the approach [m]
     stated_reference_approach : (...) [m]; another one is used if its load is too small or too large
     height_offset             : (...) in (0, 1) [1] moves the heights. Parallel foundations with different
                                 offsets slip at different displacements, so the errors of their stepwise slip
@@ -73,40 +83,42 @@ def slider_heights(
     offset_column = np.asarray(height_offset, dtype=np.float64)[..., None]
     end = pressure_curve.end_point[1]
     load = pressure_curve.derivatives(reference_approach, 0)[0]
-    touches = load > MIN_REFERENCE_OVER_END_LOAD * end
+    touches = load > MIN_REFERENCE_LOAD_OVER_END_LOAD * end
     load = np.where(
-        touches, np.minimum(load, MAX_REFERENCE_OVER_END_LOAD * end), DEFAULT_REFERENCE_OVER_END_LOAD * end
+        touches,
+        np.minimum(load, MAX_REFERENCE_LOAD_OVER_END_LOAD * end),
+        DEFAULT_REFERENCE_LOAD_OVER_END_LOAD * end,
     )[..., None]
     position_below = (np.arange(HEIGHTS_BELOW_REFERENCE)[::-1] + offset_column) / HEIGHTS_BELOW_REFERENCE
-    position_above = (
-        np.arange(SLIDER_HEIGHT_COUNT_ABOVE_REFERENCE) + offset_column
-    ) / SLIDER_HEIGHT_COUNT_ABOVE_REFERENCE
+    position_above = (np.arange(HEIGHTS_ABOVE_REFERENCE) + offset_column) / HEIGHTS_ABOVE_REFERENCE
     loads_below = load * (1.0 - position_below) ** 2 / (position_below**2 + (1.0 - position_below) ** 2)
     loads_above = load * np.exp(np.log(end / load) * position_above**2)
     lowest, highest = (np.full_like(load, x) for x in pressure_curve.displacement[[0, -1]])
     inner_heights = pressure_curve.inverse(np.concatenate([loads_below, load, loads_above], axis=-1))
     inner_heights[..., HEIGHTS_BELOW_REFERENCE] = np.where(
-        touches & (load[..., 0] < MAX_REFERENCE_OVER_END_LOAD * end),
+        touches & (load[..., 0] < MAX_REFERENCE_LOAD_OVER_END_LOAD * end),
         reference_approach,
         inner_heights[..., HEIGHTS_BELOW_REFERENCE],
     )
     return np.concatenate([lowest, inner_heights, highest], axis=-1)
 
 
-def heights_after_liftoff(heights: Array, min_approach: ArrayLike) -> Array:
+def heights_after_liftoff(slider_heights: Array, min_approach: ArrayLike) -> Array:
     """Slider heights after partial lift-off: the first height above the smallest approach moves down to it.
 
-    heights      : (..., n) [m]
+    slider_heights : (..., h) [m] of h heights, see `slider_heights`
     min_approach : (...) [m] smallest approach so far
 
     Springs above min_approach have lifted off and have no force, so this height can be changed. Springs that
     touch and lift off periodically are then in another height interval than springs that stay in contact.
     """
     smallest = np.asarray(min_approach, dtype=np.float64)[..., None]
-    is_below = heights < smallest
+    is_below = slider_heights < smallest
     next_above = is_below[..., :-1] & ~is_below[..., 1:]
     next_above[..., -1] = False  # no springs are beyond the last height
-    return np.concatenate([heights[..., :1], np.where(next_above, smallest, heights[..., 1:])], axis=-1)
+    return np.concatenate(
+        [slider_heights[..., :1], np.where(next_above, smallest, slider_heights[..., 1:])], axis=-1
+    )
 
 
 @cache
@@ -130,9 +142,11 @@ def torsion_directions(slider_count: int) -> Array:
 
 
 def sum_slider_forces(slider_forces: Array) -> Array:
-    """Resultant (..., 3) of slider forces (..., 2, n): along x, along y, around the centre of the patch.
+    """Resultant (..., 3) of the forces of n sliders of a patch: along x, along y, around its centre.
 
-    The last is the torque over the radius of the slider circle.
+    The last is the torque divided by the radius of the circle on which the sliders lie.
+
+    slider_forces : (..., 2, n) components along x and y
     """
     around_it = np.sum(torsion_directions(slider_forces.shape[-1]) * slider_forces, axis=(-2, -1))
     return np.concatenate([np.sum(slider_forces, axis=-1), around_it[..., None]], axis=-1)
@@ -144,7 +158,7 @@ FULL_STICK_OVER_GROSS_SLIP_DISPLACEMENT = 1e-3
 
 @dataclass(frozen=True, slots=True)
 class SliderProperties:
-    """Properties (..., n) of sliders at an approach, per area of their patch.
+    """Properties (..., n) of n sliders at an approach, per area of their patch.
 
     stiffness       : [Pa/m] tangential; 0 without contact
     friction_limit  : [Pa] share of the slider in mu times the pressure of the patch
@@ -160,7 +174,7 @@ class SliderProperties:
 class Foundation:
     """Winkler foundation of n sliders for an interface, or for several parallel ones.
 
-    pressure_curve       : pressure [Pa] over approach [m], convex
+    pressure_curve       : pressure [Pa] as a function of the approach [m], convex
     stiffness_ratio      : kappa = K_T/K_N [1]
     friction_coefficient : mu [1]
     heights              : (..., n/2 + 1) [m] increasing heights that separate the ranges of springs; parallel
@@ -180,7 +194,7 @@ class Foundation:
         return 2 * int(self.heights.shape[-1] - 1)
 
     def virgin_forces(self, *leading_shape: int) -> Array:
-        """Slider forces (*shape, 2, n) of the virgin state: zeros."""
+        """Forces (*leading_shape, 2, n) of the n sliders along x and y in the virgin state: zeros."""
         return np.zeros((*leading_shape, 2, self.slider_count))
 
     def stick_stiffness(self, approach: ArrayLike) -> Array:
@@ -192,14 +206,14 @@ class Foundation:
 
     def full_stick_update(
         self,
-        force: Array,
+        start_traction: Array,
         start_approach: ArrayLike,
         end_approach: ArrayLike,
         tangential_displacement: ArrayLike,
     ) -> tuple[Array, Array]:
         """Update in full stick: traction (..., 3) [Pa] after an increment, and whether (...) it holds.
 
-        force : (..., 3) [Pa] traction at the start, see `sum_slider_forces`
+        start_traction : (..., 3) [Pa] traction at the start, see `sum_slider_forces`
         start_approach, end_approach : (...) [m] approaches at the start and at the end
         tangential_displacement : (..., 3) [m] of the other side along x, y and around the centre
         """
@@ -208,7 +222,7 @@ class Foundation:
         is_unloading = np.asarray(end_approach) < np.asarray(start_approach)
         rule = stick_retention(stiffness_start, stiffness_end, is_unloading)
         retention, secant_stiffness = (np.asarray(factor)[..., None] for factor in rule)
-        traction = retention * force + secant_stiffness * np.asarray(tangential_displacement)
+        traction = retention * start_traction + secant_stiffness * np.asarray(tangential_displacement)
         max_traction = (
             FULL_STICK_OVER_GROSS_SLIP_DISPLACEMENT
             * self.friction_coefficient
@@ -218,52 +232,65 @@ class Foundation:
         )
         return traction, np.sqrt(np.sum(traction**2, axis=-1)) <= max_traction
 
-    def distribute_stick_force(self, force: Array, approach: ArrayLike) -> Array:
+    def distribute_stick_force(self, stick_traction: Array, approach: ArrayLike) -> Array:
         """Distribute a traction (..., 3) of full stick to sliders, by stiffness: forces (..., 2, n) [Pa]."""
         stiffness = self.slider_properties(approach).stiffness
         total = np.sum(stiffness, axis=-1, keepdims=True)
         share = np.divide(stiffness, total, out=np.zeros_like(stiffness), where=total > 0.0)
-        unit_forces = force[..., :2, None] + force[..., 2:, None] * torsion_directions(self.slider_count)
+        unit_forces = stick_traction[..., :2, None] + stick_traction[..., 2:, None] * torsion_directions(
+            self.slider_count
+        )
         return np.asarray(unit_forces * share[..., None, :])
 
     def virgin_traction(self, approach: ArrayLike, tangential_displacement: ArrayLike) -> Array:
         """Virgin curve: traction (...) [Pa] at displacements u (...) >= 0 [m], constant approach (...) [m].
 
-        mu [p(delta) - p(delta - kappa u/mu)], the sum over all springs, without discretisation by sliders.
+        mu [p(delta) - p(delta - kappa u/mu)], with the friction coefficient mu, the pressure p, the approach
+        delta and the stiffness ratio kappa: the sum over all springs, without discretisation by sliders.
         """
         load, slipped_load = (
             self.pressure_curve.derivatives(x, 0)[0]
-            for x in self._slip_range(approach, tangential_displacement)
+            for x in self._slipped_height_range(approach, tangential_displacement)
         )
         return np.asarray(self.friction_coefficient * (load - slipped_load))
 
     def slipped_pressure(
         self, approach: ArrayLike, tangential_displacement: ArrayLike
     ) -> tuple[Array, Array, Array]:
-        """Pressures (...) [Pa] at the approach delta and at delta - kappa u/mu, and the energy in between.
+        """Pressures (...) [Pa] at both ends of the range of springs that have slipped, and energy in between.
 
-        Springs between both heights have slipped. The energy (...) [J/m2] is the integral of the pressure
-        from the lower to the upper approach.
+        The springs with heights between the approach delta and delta - kappa u/mu have slipped, with the
+        stiffness ratio kappa and the friction coefficient mu. The energy (...) [J/m2] is the integral of the
+        pressure from the lower to the upper end.
 
         approach                : delta (...) [m]
         tangential_displacement : u (...) >= 0 [m] from the virgin state
         """
-        upper, lower = self._slip_range(approach, tangential_displacement)
+        upper, lower = self._slipped_height_range(approach, tangential_displacement)
         load, slipped_load = (self.pressure_curve.derivatives(x, 0)[0] for x in (upper, lower))
         return load, slipped_load, self.pressure_curve.energy(upper) - self.pressure_curve.energy(lower)
 
-    def _slip_range(self, approach: ArrayLike, tangential_displacement: ArrayLike) -> tuple[Array, Array]:
-        """Approach delta (...) [m], and the lower end delta - kappa u/mu (...) [m] of slipped springs."""
+    def _slipped_height_range(
+        self, approach: ArrayLike, tangential_displacement: ArrayLike
+    ) -> tuple[Array, Array]:
+        """Upper and lower end (...) [m] of the heights of all springs that have slipped.
+
+        The upper end is the approach (...) [m]. The displacement (...) [m] starts at the virgin state, and is
+        not negative.
+        """
         upper = np.asarray(approach, dtype=np.float64)
         displacement = np.asarray(tangential_displacement, dtype=np.float64)
         return upper, np.asarray(upper - displacement / (self.friction_coefficient / self.stiffness_ratio))
 
-    def cycle_energies(self, approach: ArrayLike, amplitude: ArrayLike) -> tuple[Array, Array]:
-        """Energy loss of cycles with amplitudes (...) [m], and elastic energy at their ends (...) [J/m2].
+    def cycle_energies(self, approach: ArrayLike, displacement_amplitude: ArrayLike) -> tuple[Array, Array]:
+        """Energy loss (...) [J/m2] of friction cycles of amplitudes (...) [m]; elastic energy at their ends.
 
         The approaches (...) [m] are constant. The relative accuracy is full also for amplitudes near zero.
         """
-        upper_approach, a = np.asarray(approach, dtype=np.float64), np.asarray(amplitude, dtype=np.float64)
+        upper_approach, a = (
+            np.asarray(approach, dtype=np.float64),
+            np.asarray(displacement_amplitude, dtype=np.float64),
+        )
         law = self.friction_coefficient, self.stiffness_ratio, a
         (load, *upper), (_, *lower) = (
             self.pressure_curve.derivatives(x, 3)
@@ -284,8 +311,8 @@ class Foundation:
         """Stiffness, friction limit and slope of the sliders at approaches (...) [m]."""
         delta = np.asarray(approach, dtype=np.float64)[..., None]
         (low, p_low, k_low), (high, p_high, k_high) = (
-            [slider_stiffness[..., part] for slider_stiffness in (self.heights, *self._pressure_at_heights)]
-            for part in (slice(-1), slice(1, None))
+            [at_heights[..., ends] for at_heights in (self.heights, *self._pressure_at_heights)]
+            for ends in (slice(-1), slice(1, None))
         )
         is_touching, is_full = delta >= low, delta >= high
         p, k, slope = self.pressure_curve.derivatives(delta, 2)
@@ -309,35 +336,37 @@ class Foundation:
 
     def advance(
         self,
-        force: Array,
+        start_force: Array,
         start_approach: ArrayLike,
         end_approach: ArrayLike,
         tangential_displacement: ArrayLike,
     ) -> SliderUpdate:
         """Return-map all sliders for one increment, see `return_map`.
 
-        force      : (..., 2, n) [Pa] slider forces at the start
+        start_force : (..., 2, n) [Pa] slider forces at the start
         start_approach, end_approach : (...) [m] approaches
         tangential_displacement : (..., 2) [m] of the other side along x and y, or (..., 3): also around the
                      centre of the patch
 
         The loss is exact for sliders of constant stiffness, else accurate to third order in the increment.
         """
-        path = _DisplacementIncrement.from_ends(
+        path = _DisplacementIncrement.from_approaches(
             start_approach, end_approach, self._slider_displacements(tangential_displacement)
         )
         properties_end = self.slider_properties(end_approach)
         properties_start = (
             self.slider_properties(start_approach) if np.any(path.approach_change) else properties_end
         )
-        update = self._return_map(force, properties_start, properties_end, path)
+        update = self._return_map(start_force, properties_start, properties_end, path)
         stiffness = properties_start.stiffness, properties_end.stiffness
         loss, is_constant = update.dissipated_energy, stiffness[0] == stiffness[1]
         if not np.all(is_constant):
             changes = ~self._keeps_contact_state(path)
-            middle = self._middle_forces(force, properties_start, path) if np.any(changes) else [0.0, 0.0]
+            middle = (
+                self._middle_forces(start_force, properties_start, path) if np.any(changes) else [0.0, 0.0]
+            )
             varying = varying_stiffness_loss(
-                _vector_components(force),
+                _vector_components(start_force),
                 update.force,
                 path.tangential_components,
                 stiffness,
@@ -360,19 +389,19 @@ class Foundation:
             else column
         )
 
-    def _foundation_tangent(self, xx: Array, xy: Array, yy: Array) -> Array:
-        """Tangent stiffness (..., 6) [Pa/m] of all sliders: xx, xy, yy, and xt, yt, tt with the rotation.
+    def _foundation_tangent(self, tangent_xx: Array, tangent_xy: Array, tangent_yy: Array) -> Array:
+        """Tangent stiffness (..., 6) [Pa/m] of all sliders: xx, xy, yy, and xr, yr, rr with the rotation.
 
-        xx, xy, yy : (..., n) tangent stiffness of the sliders
+        tangent_xx, tangent_xy, tangent_yy : (..., n) tangent stiffness of each slider
         """
         e_x, e_y = torsion_directions(self.slider_count)
-        x_t, y_t = xx * e_x + xy * e_y, xy * e_x + yy * e_y
-        components = np.stack([xx, xy, yy, x_t, y_t, x_t * e_x + y_t * e_y])
+        x_r, y_r = tangent_xx * e_x + tangent_xy * e_y, tangent_xy * e_x + tangent_yy * e_y
+        components = np.stack([tangent_xx, tangent_xy, tangent_yy, x_r, y_r, x_r * e_x + y_r * e_y])
         return np.asarray(np.moveaxis(np.sum(components, axis=-1), 0, -1))
 
     def _return_map(
         self,
-        force: Array,
+        start_force: Array,
         start_properties: SliderProperties,
         end_properties: SliderProperties,
         displacement_increment: "_DisplacementIncrement",
@@ -400,28 +429,28 @@ class Foundation:
             (start_properties.stiffness, start_properties.stiffness_slope),
             (end_properties.stiffness, end_properties.stiffness_slope),
         )
-        keeps, carries = retention_and_stiffness(*ends, change, rise, small)
-        springs = end_properties.stiffness, compliance(end_properties.stiffness)
+        retention, secant_stiffness = retention_and_stiffness(*ends, change, rise, small)
         return return_map(
-            _vector_components(force),
-            keeps,
-            carries,
+            _vector_components(start_force),
+            retention,
+            secant_stiffness,
             displacement_increment.tangential_components,
             start_properties.friction_limit,
             end_properties.friction_limit,
-            *springs,
+            end_properties.stiffness,
+            compliance(end_properties.stiffness),
         )
 
     def _middle_forces(
         self,
-        force: Array,
+        start_force: Array,
         start_properties: SliderProperties,
         displacement_increment: "_DisplacementIncrement",
     ) -> Vector:
         """Slider forces (..., 2, n) [Pa] in the middle of a displacement increment."""
         half = displacement_increment.scale_increment(0.5)
         return self._return_map(
-            force, start_properties, self.slider_properties(half.end_approach[..., 0]), half
+            start_force, start_properties, self.slider_properties(half.end_approach[..., 0]), half
         ).force
 
     def _keeps_contact_state(self, displacement_increment: "_DisplacementIncrement") -> NDArray[np.bool_]:
@@ -444,7 +473,7 @@ class _DisplacementIncrement:
     tangential_displacement: Array
 
     @classmethod
-    def from_ends(
+    def from_approaches(
         cls, start_approach: ArrayLike, end_approach: ArrayLike, tangential_displacement: Array
     ) -> "_DisplacementIncrement":
         """Displacement increment between two approaches (...) [m], which get an axis for the sliders."""
@@ -480,85 +509,92 @@ def _vector_components(slider_vectors: Array) -> tuple[Array, Array]:
 def _cycle_energies(
     friction_coefficient: Number,
     stiffness_ratio: Number,
-    amplitude: Number,
+    displacement_amplitude: Number,
     pressure_drop: Number,
     energy_excess: Number,
 ) -> tuple[Number, Number]:
     """Energy loss and elastic energy [J/m2] of a friction cycle, from differences of pressure and energy.
 
-    pressure_drop : [Pa] difference of the pressures at the approach and at the lowest slipped height
-    energy_excess : [J/m2] trapezoidal rule minus exact integral of the pressure between both
+    pressure_drop : [Pa] pressure at the approach minus pressure at the height of the last spring that slips
+    energy_excess : [J/m2] integral of the pressure between these heights: trapezoidal rule minus exact value
     """
     return 8.0 * friction_coefficient**2 / stiffness_ratio * np.maximum(
         energy_excess, 0.0
-    ), 0.5 * friction_coefficient * pressure_drop * amplitude
+    ), 0.5 * friction_coefficient * pressure_drop * displacement_amplitude
 
 
 def cycle_energies(
     friction_coefficient: Number,
     stiffness_ratio: Number,
-    amplitude: Number,
-    load: Number,
-    slipped_load: Number,
+    displacement_amplitude: Number,
+    contact_pressure: Number,
+    pressure_at_lower_slip_end: Number,
     pressure_integral: Number,
 ) -> tuple[Number, Number]:
     """Energy loss [J/m2] of a cycle at constant approach, and elastic energy [J/m2] at its ends.
 
-    With the virgin curve B(a), a the amplitude, and its integral I they are 8 (I - B a/2) and B a/2 (Masing).
-    Differences cancel for small amplitudes: then use `small_cycle_energies`.
+    The energies are 8 (I - B a/2) and B a/2 (Masing), with the virgin curve B(a), its integral I and the
+    amplitude a. Differences cancel for small amplitudes: then use `small_cycle_energies`.
 
-    friction_coefficient, stiffness_ratio, amplitude : mu [1], kappa = K_T/K_N [1], a [m]
-    load, slipped_load, pressure_integral : result of `Foundation.slipped_pressure`
+    friction_coefficient, stiffness_ratio, displacement_amplitude : mu [1], kappa = K_T/K_N [1], a [m]
+    contact_pressure, pressure_at_lower_slip_end, pressure_integral : result of `Foundation.slipped_pressure`
     """
-    reach = amplitude * (stiffness_ratio / friction_coefficient)
+    reach = displacement_amplitude * (stiffness_ratio / friction_coefficient)
     return _cycle_energies(
         friction_coefficient,
         stiffness_ratio,
-        amplitude,
-        load - slipped_load,
-        0.5 * reach * (load + slipped_load) - pressure_integral,
+        displacement_amplitude,
+        contact_pressure - pressure_at_lower_slip_end,
+        0.5 * reach * (contact_pressure + pressure_at_lower_slip_end) - pressure_integral,
     )
 
 
 def small_cycle_energies(
     friction_coefficient: Number,
     stiffness_ratio: Number,
-    amplitude: Number,
+    displacement_amplitude: Number,
     upper_derivatives: Vector,
     lower_derivatives: Vector,
 ) -> tuple[Number, Number]:
     """Energy loss and elastic energy [J/m2] of a cycle of small amplitude, exact in one segment of the curve.
 
     The energies are those of `cycle_energies`, without its cancellation.
-    upper_derivatives, lower_derivatives : first three derivatives of the pressure, at delta and at
-        delta - kappa a/mu
+
+    friction_coefficient, stiffness_ratio, displacement_amplitude : mu [1], kappa = K_T/K_N [1], a [m]
+    upper_derivatives, lower_derivatives : first three derivatives of the pressure with respect to the
+        approach, at the approach and at the approach minus kappa a/mu
     """
-    reach = amplitude * (stiffness_ratio / friction_coefficient)
+    reach = displacement_amplitude * (stiffness_ratio / friction_coefficient)
     upper_stiffness, upper_d2p, upper_d3p = upper_derivatives
     lower_stiffness, lower_d2p, lower_d3p = lower_derivatives
     fall = reach * (0.5 * (upper_stiffness + lower_stiffness) - reach * (upper_d2p - lower_d2p) / 12.0)
     excess = reach**3 * ((upper_d2p + lower_d2p) / 24.0 - reach * (upper_d3p - lower_d3p) / 120.0)
-    return _cycle_energies(friction_coefficient, stiffness_ratio, amplitude, fall, excess)
+    return _cycle_energies(friction_coefficient, stiffness_ratio, displacement_amplitude, fall, excess)
 
 
 def is_small_amplitude(
-    friction_coefficient: Number, stiffness_ratio: Number, amplitude: Number, load: Number, stiffness: Number
+    friction_coefficient: Number,
+    stiffness_ratio: Number,
+    displacement_amplitude: Number,
+    contact_pressure: Number,
+    contact_stiffness: Number,
 ) -> Number:
     """Whether the amplitude of a friction cycle is so small that differences of energies would cancel.
 
     The energies are then computed by `small_cycle_energies`.
 
-    Arguments: amplitude [m] of the displacement, load [Pa] and stiffness [Pa/m] of the contact.
+    displacement_amplitude, contact_pressure, contact_stiffness : [m], [Pa], [Pa/m]
     """
     return (
-        amplitude * (stiffness_ratio / friction_coefficient) * stiffness < SMALL_CYCLE_FORCE_OVER_LOAD * load
+        displacement_amplitude * (stiffness_ratio / friction_coefficient) * contact_stiffness
+        < SMALL_CYCLE_FORCE_OVER_LOAD * contact_pressure
     )
 
 
 def partial_contact(
-    load: Number,
-    stiffness: Number,
-    d2p: Number,
+    pressure_above_tangent: Number,
+    stiffness_above_tangent: Number,
+    contact_stiffness_slope: Number,
     approach_excess: Number,
     stiffness_ratio: Number,
     friction_coefficient: Number,
@@ -567,21 +603,22 @@ def partial_contact(
 
     The approach exceeds the lower height of this range of springs by `approach_excess` [m].
 
-    load, stiffness : [Pa], [Pa/m] of the curve minus its tangent at the lower height
-    d2p             : [Pa/m2] derivative of the stiffness
+    pressure_above_tangent, stiffness_above_tangent : [Pa], [Pa/m] of the pressure curve minus its tangent at
+        the lower height
+    contact_stiffness_slope : [Pa/m2] derivative of the stiffness
 
     Returns tangential stiffness [Pa/m] of each of the two sliders, its derivative with respect to the
     approach [Pa/m2], and the friction limits [Pa] of the slider that slips first and of the other one.
     """
-    normal = np.maximum(load, 0.0)
-    springs = select(load > 0.0, np.maximum(stiffness, 0.0), 0.0)  # round-off may make the load negative
-    apart = np.minimum(
-        springs * (UNIFORM_DEVIATION * approach_excess), normal
-    )  # the first spring has no load
+    normal = np.maximum(pressure_above_tangent, 0.0)
+    # round-off may make the pressure negative
+    springs = select(pressure_above_tangent > 0.0, np.maximum(stiffness_above_tangent, 0.0), 0.0)
+    # the first spring has no load
+    apart = np.minimum(springs * (UNIFORM_DISTRIBUTION_DEVIATION * approach_excess), normal)
     half = 0.5 * friction_coefficient
     return (
         0.5 * stiffness_ratio * springs,
-        0.5 * stiffness_ratio * d2p,
+        0.5 * stiffness_ratio * contact_stiffness_slope,
         half * (normal - apart),
         half * (normal + apart),
     )
@@ -613,7 +650,7 @@ def retention_and_stiffness(
     end_stiffness: tuple[Number, Number],
     approach_change: Number,
     stiffness_integral: Number,
-    is_small_change: Number,
+    is_small_approach_change: Number,
 ) -> tuple[Number, Number]:
     """Fraction of the friction force retained [1], and secant stiffness [Pa/m], if the normal load changes.
 
@@ -624,7 +661,7 @@ def retention_and_stiffness(
     approach_change : [m] change of the approach
     stiffness_integral : [Pa] integral of the stiffness over the approach: kappa/mu times the mean change of
         the friction limits, kappa = K_T/K_N
-    is_small_change : whether to compute the mean stiffness from both ends (fourth order), because
+    is_small_approach_change : whether to compute the mean stiffness from both ends (fourth order), because
         stiffness_integral cancels
     """
     (stiffness_start, slope_start), (stiffness_end, slope_end) = start_stiffness, end_stiffness
@@ -632,38 +669,38 @@ def retention_and_stiffness(
     retention = select(touches, np.minimum(stiffness_end / select(touches, stiffness_start, 1.0), 1.0), 0.0)
     ends = 0.5 * (stiffness_start + stiffness_end) + approach_change * (slope_start - slope_end) / 12.0
     mean = select(
-        is_small_change,
+        is_small_approach_change,
         ends,
         select(
             stiffness_start == stiffness_end,
             stiffness_end,
-            stiffness_integral / select(is_small_change, 1.0, approach_change),
+            stiffness_integral / select(is_small_approach_change, 1.0, approach_change),
         ),
     )
     return select(is_unloading, retention, 1.0), select(is_unloading, stiffness_end, mean)
 
 
 def varying_stiffness_loss(
-    force: Vector,
-    new_force: Vector,
+    start_force: Vector,
+    end_force: Vector,
     tangential_displacement: Vector,
-    stiffness: tuple[Number, Number],
+    slider_stiffness: tuple[Number, Number],
     slip_force: Number,
     has_contact_change: Number,
     middle_force: Vector,
 ) -> Number:
     """Energy loss [J/m2] of a slider with changing stiffness: work minus increase of elastic energy.
 
-    force, new_force : forces at the start and at the end of the increment
+    start_force, end_force : forces at the start and at the end of the increment
     tangential_displacement : displacement increment
-    stiffness : [Pa/m] at both ends
+    slider_stiffness : [Pa/m] at both ends
     slip_force : slip force of the return mapping, see `ReturnMapping`
     has_contact_change : whether the contact state changes. Then the work is computed by Simpson's rule with
         the force in the middle of the increment (middle_force), else by Hermite's rule from both ends.
     """
-    stiffness_start, stiffness_end = stiffness
-    ends = (force[0] + new_force[0]) * tangential_displacement[0] + (
-        force[1] + new_force[1]
+    stiffness_start, stiffness_end = slider_stiffness
+    ends = (start_force[0] + end_force[0]) * tangential_displacement[0] + (
+        start_force[1] + end_force[1]
     ) * tangential_displacement[1]
     half = middle_force[0] * tangential_displacement[0] + middle_force[1] * tangential_displacement[1]
     hermite_term = select(
@@ -677,12 +714,13 @@ def varying_stiffness_loss(
     )
     work = select(has_contact_change, ends / 6.0 + 2.0 / 3.0 * half, 0.5 * ends + hermite_term)
     return np.maximum(
-        work - (_elastic_energy(new_force, stiffness_end) - _elastic_energy(force, stiffness_start)), 0.0
+        work - (_elastic_energy(end_force, stiffness_end) - _elastic_energy(start_force, stiffness_start)),
+        0.0,
     )
 
 
-def _elastic_energy(force: Vector, stiffness: Number) -> Number:
+def _elastic_energy(slider_force: Vector, slider_stiffness: Number) -> Number:
     """Elastic energy [J/m2] of a slider: force^2/(2 stiffness); 0 without stiffness."""
-    has_stiffness = stiffness > 0.0
-    square = force[0] * force[0] + force[1] * force[1]
-    return select(has_stiffness, square / (2.0 * select(has_stiffness, stiffness, 1.0)), 0.0)
+    has_stiffness = slider_stiffness > 0.0
+    square = slider_force[0] * slider_force[0] + slider_force[1] * slider_force[1]
+    return select(has_stiffness, square / (2.0 * select(has_stiffness, slider_stiffness, 1.0)), 0.0)

@@ -27,17 +27,24 @@ _DAMPER_STEP_FACTOR = 0.39
 """Largest stable step times d/J [1], damper without spring, force one step late; fit to eigenvalues."""
 
 
-def mobility(inertia: Number, lever_arm: Number = 1.0) -> Number:
-    """Mobility lever^2/J of a body with inertia J at a lever arm [1 or m]; 0 for inertia 0: a fixed body."""
-    is_free = inertia > 0.0
-    return select(is_free, lever_arm**2 / select(is_free, inertia, 1.0), 0.0 * inertia)
+def mobility(body_inertia: Number, lever_arm: Number = 1.0) -> Number:
+    """Mobility lever_arm^2/J: inverse equivalent mass of a body with inertia J at a lever arm [1 or m].
+
+    Inertia 0 stands for a fixed body; its mobility is 0.
+    """
+    is_free = body_inertia > 0.0
+    return select(is_free, lever_arm**2 / select(is_free, body_inertia, 1.0), 0.0 * body_inertia)
 
 
-def largest_stable_steps(stiffness: Number, damping: Number, mobility: Number) -> tuple[Number, Number]:
-    """Largest stable steps [s] with a force without delay, and with a force one step late (parallel master).
+def largest_stable_steps(
+    joint_stiffness: Number, joint_damping: Number, body_mobility: Number
+) -> tuple[Number, Number]:
+    """Largest stable co-simulation steps [s]: with a force without delay, and with a force one step late.
 
-    stiffness K, damping d : at the present state, in SI
-    mobility w             : 1/J of the body, or the sum of both bodies' [1/kg or 1/(kg.m2)]
+    The force is one step late with a parallel master.
+
+    joint_stiffness, joint_damping : K and d at the present state, in SI
+    body_mobility : w = 1/J of the body, or the sum of 1/J of both bodies [1/kg or 1/(kg.m2)]
 
     With omega^2 = K w and e = d w = 2 zeta omega they are
 
@@ -47,11 +54,14 @@ def largest_stable_steps(stiffness: Number, damping: Number, mobility: Number) -
     to zeta = 4. For small damping they are 2/omega and (2 zeta)^(1/3)/omega. With a late force and no damping
     no step is stable: the second is 0.
     """
-    square = select(stiffness > 0.0, stiffness, 0.0 * stiffness) * mobility + (2.0 / MAX_STABLE_STEP) ** 2
-    damping_rate = damping * mobility
+    square = (
+        select(joint_stiffness > 0.0, joint_stiffness, 0.0 * joint_stiffness) * body_mobility
+        + (2.0 / MAX_STABLE_STEP) ** 2
+    )
+    damping_rate = joint_damping * body_mobility
     is_damped = damping_rate > 0.0
     safe_rate = select(is_damped, damping_rate, 1.0)
     late_step = (safe_rate / (square**2 + safe_rate**4 / _DAMPER_STEP_FACTOR**3)) ** (1.0 / 3.0)
     return 2.0 / (np.sqrt(square + damping_rate**2) + damping_rate), select(
-        is_damped, late_step, select(mobility > 0.0, 0.0 * damping_rate, MAX_STABLE_STEP)
+        is_damped, late_step, select(body_mobility > 0.0, 0.0 * damping_rate, MAX_STABLE_STEP)
     )

@@ -48,20 +48,20 @@ class Interval:
         """
         for open_end, closed_end, names in ((gt, ge, "gt and ge"), (lt, le, "lt and le")):
             if open_end is not None and closed_end is not None:
-                raise ValueError(f"{names} = {open_end}, {closed_end} are the same bound; state only one")
+                raise ValueError(f"{names} = {open_end}, {closed_end} are the same end; state only one")
         low = gt if ge is None else ge
         high = lt if le is None else le
         return cls(-inf if low is None else low, inf if high is None else high, ge is None, le is None)
 
-    def contains(self, value: Number) -> Any:
-        """Whether values lie inside, elementwise; False for NaN and infinity.
+    def contains(self, tested_value: Number) -> Any:
+        """Whether values lie inside the interval, elementwise; False for NaN and infinity.
 
-        True if a value or an end is a symbol: it has no value yet.
+        True if a value or an end is a symbol of computer algebra: it has no value yet.
         """
-        if is_symbol(value) or is_symbol(self.low) or is_symbol(self.high):
+        if is_casadi_symbol(tested_value) or is_casadi_symbol(self.low) or is_casadi_symbol(self.high):
             return True
-        above = value > self.low if self.low_open else value >= self.low
-        below = value < self.high if self.high_open else value <= self.high
+        above = tested_value > self.low if self.low_open else tested_value >= self.low
+        below = tested_value < self.high if self.high_open else tested_value <= self.high
         return above & below
 
     @property
@@ -75,14 +75,18 @@ class Interval:
         resolution = 1e-5 * min(abs(self.low), abs(self.high))
         return not self.low < self.high or bool(self.high - self.low <= resolution < inf)
 
-    def intersection(self, interval: "Interval") -> "Interval":
+    def intersection(self, other_interval: "Interval") -> "Interval":
         """Intersection of two intervals; a common end is open if it is open in one of them."""
-        low, low_open = max((self.low, self.low_open), (interval.low, interval.low_open))
-        high, high_closed = min((self.high, not self.high_open), (interval.high, not interval.high_open))
+        low, low_open = max((self.low, self.low_open), (other_interval.low, other_interval.low_open))
+        high, high_closed = min(
+            (self.high, not self.high_open), (other_interval.high, not other_interval.high_open)
+        )
         return Interval(low, high, low_open, not high_closed)
 
     def closed_bounds(self) -> tuple[float, float]:
-        """Smallest and largest float inside, for the attributes min and max of FMI; infinite without an end.
+        """Smallest and largest float of the interval, for the attributes min and max of FMI.
+
+        Infinite if the interval has no end.
 
         Next to an open end at zero this is the smallest normal float: some FMI tools reject denormal numbers.
         """
@@ -97,27 +101,27 @@ class Interval:
         return f"{left}{self.low:g}, {self.high:g}{right}"
 
 
-def _next_float(start_value: float, direction_value: float) -> float:
-    """Next float after a value in the direction of another one; next to zero the smallest normal float."""
+def _next_float(start_value: float, target_value: float) -> float:
+    """Next float after a start value in the direction of a target; next to zero the smallest normal float."""
     if start_value == 0.0:
-        return sys.float_info.min if direction_value > 0.0 else -sys.float_info.min
-    return nextafter(start_value, direction_value)
+        return sys.float_info.min if target_value > 0.0 else -sys.float_info.min
+    return nextafter(start_value, target_value)
 
 
-def is_symbol(value: object) -> bool:
+def is_casadi_symbol(tested_value: object) -> bool:
     """Whether a value is a symbol of a computer-algebra tool (CasADi)."""
-    return type(value) is not float and type(value).__module__.startswith("casadi")
+    return type(tested_value) is not float and type(tested_value).__module__.startswith("casadi")
 
 
 def erf(x: Number) -> Number:
     """Error function erf(x) [1] of floats, arrays or symbols."""
-    if is_symbol(x):
+    if is_casadi_symbol(x):
         return sys.modules[type(x).__module__.partition(".")[0]].erf(x)
     return np.vectorize(math.erf, otypes=[float])(x)
 
 
-def select(condition: Any, value: Number, other_value: Number) -> Number:
-    """Select `value` where a condition holds, else `other_value`; a scalar condition keeps the type."""
+def select(condition: Any, value_if_true: Number, value_if_false: Number) -> Number:
+    """Select one of two values, element by element, by a condition; a scalar condition keeps the type."""
     if isinstance(condition, bool | np.bool_):
-        return value if condition else other_value
-    return np.where(condition, value, other_value)
+        return value_if_true if condition else value_if_false
+    return np.where(condition, value_if_true, value_if_false)

@@ -5,8 +5,11 @@ A command adds its option to the message.
 
 
 class InputRefusal(ValueError):
-    """Invalid input; `setting` is the argument that would resolve it (`rated_torque`, `error`, `unit`)."""
+    """Error for an invalid input; `setting` names the argument that the user must state or change.
 
-    def __init__(self, message: str, setting_name: str) -> None:
-        super().__init__(message)
+    Examples are `rated_torque`, `error`, `unit`.
+    """
+
+    def __init__(self, refusal_message: str, setting_name: str) -> None:
+        super().__init__(refusal_message)
         self.setting = setting_name

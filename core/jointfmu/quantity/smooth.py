@@ -20,7 +20,10 @@ def smooth_step(x: Number) -> Number:
 
 
 def smooth_step_slopes(x: Number) -> tuple[Number, Number]:
-    """First and second derivative of `smooth_step`: 30 (r - r^2)^2 and 60 (r - r^2)(1 - 2 r)."""
+    """First and second derivative of the smooth step: 30 (r - r^2)^2 and 60 (r - r^2)(1 - 2 r).
+
+    r: x, clipped to the interval from 0 to 1.
+    """
     r, steepest = _clip_to_unit_interval(x), 3.0 * SMOOTH_STEP_COEFFICIENTS[0]
     rest = r * (1.0 - r)
     return steepest * rest**2, 2.0 * steepest * rest * (1.0 - 2.0 * r)

@@ -45,7 +45,7 @@ _PREFIX_EXPONENTS = {"G": 9, "M": 6, "k": 3, "c": -2, "m": -3, "u": -6, "µ": -6
 """{prefix of a unit: power of ten}, for the symbols in _PREFIXED_SYMBOLS; both Unicode signs for micro."""
 _PREFIXED_SYMBOLS = ("m", "s", "rad", "Hz", "N", "Pa", "J", "W")
 """Symbols of units that may have a prefix (km, mm, ...)."""
-_FACTOR_PATTERN = re.compile(r"([^\W\d_]+|1(?!\d))(\d*)")
+_UNIT_FACTOR_PATTERN = re.compile(r"([^\W\d_]+|1(?!\d))(\d*)")
 """Pattern of one factor of a unit: symbol and exponent."""
 _POWER_OF_TEN_PATTERN = re.compile(
     r"[x\u00d7]?\s*(?:1e|10\s?\^\s?|10(?=[⁰¹²³⁴⁵⁶⁷⁸⁹⁻]))([+-]?\d+|[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)\s*[.*·⋅]?\s*(?=\D)"
@@ -72,7 +72,7 @@ _SPELLING_REPLACEMENTS = (
 class Unit(NamedTuple):
     """SI unit: the quantity that it measures, its base units, its display units.
 
-    quantity        : name of the quantity, that of the Modelica Standard Library if it has one
+    quantity        : name of the quantity, as in the Modelica Standard Library if defined there
     base_exponents  : exponents of the SI base units
     display_factors : {display unit: factor}, displayed value = SI value * factor
     """
@@ -93,15 +93,15 @@ def base_exponents(unit: str) -> dict[str, int]:
 
 
 def conversion_factor(unit: str, target_unit: str) -> float:
-    """Conversion factor between two units. Raises ValueError if they measure different quantities."""
+    """Factor that converts a value in `unit` to `target_unit`; ValueError if their quantities differ."""
     (size, exponents), (target_size, target_exponents) = _parse_unit(unit), _parse_unit(target_unit)
     if exponents != target_exponents:
-        raise ValueError(f"unit {target_unit!r} does not measure what {unit!r} does")
+        raise ValueError(f"unit {unit!r} measures another quantity than {target_unit!r}")
     return float(size / target_size)
 
 
 def unit_sizes(unit: str, *other_units: str) -> UnitSizes:
-    """{unit: size in the first unit}: units that an input accepts, the SI unit first.
+    """Sizes {unit: size in the first unit} of the units that an input accepts, the SI unit first.
 
     Raises ValueError if the units measure different quantities.
     """
@@ -109,7 +109,9 @@ def unit_sizes(unit: str, *other_units: str) -> UnitSizes:
 
 
 def unit_size_in(unit: str, accepted_units: UnitSizes) -> float:
-    """Size of a unit, in the first unit of `accepted_units`; any unit of the same quantity is accepted.
+    """Size of a unit in the first unit of `accepted_units`; any unit of the same quantity is possible.
+
+    accepted_units : {unit: size in the first unit}
 
     Raises ValueError if the unit is unknown or measures another quantity.
     """
@@ -120,14 +122,19 @@ def unit_size_in(unit: str, accepted_units: UnitSizes) -> float:
     )
 
 
-def replace_symbols(unit: str, symbol_replacements: Mapping[str, str]) -> str:
+def replace_symbols(unit_text: str, symbol_replacements: Mapping[str, str]) -> str:
     """Replace symbols in a unit: `N/m3` with {"m": "mm"} becomes `N/mm3`."""
-    return _FACTOR_PATTERN.sub(lambda match: symbol_replacements.get(match[1], match[1]) + match[2], unit)
+    return _UNIT_FACTOR_PATTERN.sub(
+        lambda match: symbol_replacements.get(match[1], match[1]) + match[2], unit_text
+    )
 
 
 @cache
 def _parse_unit(unit: str) -> tuple[Fraction, dict[str, int]]:
-    """Size in SI units and exponents of the base units. Raises ValueError if the unit is unknown."""
+    """Parse a unit: its size in SI units, and its exponents of the SI base units.
+
+    Raises ValueError if the unit is unknown.
+    """
     total, exponents = Fraction(1), dict[str, int]()
     notation_text = unit
     if ten := _POWER_OF_TEN_PATTERN.match(notation_text):
@@ -139,8 +146,8 @@ def _parse_unit(unit: str) -> tuple[Fraction, dict[str, int]]:
     numerator, slash, denominator = notation_text.partition("/")
     for sign, product in ((1, numerator), (-1, denominator if slash else "1")):
         for text in product.split("."):
-            if not (match := _FACTOR_PATTERN.fullmatch(text)):
-                raise ValueError(f"unit {unit!r} is none; expected symbols as in N.m.s/rad")
+            if not (match := _UNIT_FACTOR_PATTERN.fullmatch(text)):
+                raise ValueError(f"unit {unit!r} cannot be read; expected unit symbols, as in N.m.s/rad")
             power = sign * int(match[2] or 1)
             symbol_size, symbol_exponents = _parse_symbol(match[1], unit)
             total *= symbol_size**power
@@ -149,15 +156,18 @@ def _parse_unit(unit: str) -> tuple[Fraction, dict[str, int]]:
     return total, {name: exponent for name, exponent in exponents.items() if exponent}
 
 
-def _parse_symbol(symbol: str, unit: str) -> tuple[Fraction, dict[str, int]]:
-    """Size and exponents of one symbol, with or without a prefix; `unit` is named in the error."""
-    if symbol in _UNIT_SYMBOLS:
-        symbol_size, symbol_exponents = _UNIT_SYMBOLS[symbol]
+def _parse_symbol(unit_symbol: str, unit: str) -> tuple[Fraction, dict[str, int]]:
+    """Parse one symbol of a unit, with or without a prefix (km): size in SI units, exponents of base units.
+
+    unit : whole unit, for the error
+    """
+    if unit_symbol in _UNIT_SYMBOLS:
+        symbol_size, symbol_exponents = _UNIT_SYMBOLS[unit_symbol]
         return Fraction(symbol_size), symbol_exponents
-    exponent, rest = _PREFIX_EXPONENTS.get(symbol[0]), symbol[1:]
+    exponent, rest = _PREFIX_EXPONENTS.get(unit_symbol[0]), unit_symbol[1:]
     if exponent is None or rest not in _PREFIXED_SYMBOLS:
         raise ValueError(
-            f"unit {unit!r}: symbol {symbol!r} is unknown, allowed are {', '.join(_UNIT_SYMBOLS)}"
+            f"unit {unit!r}: symbol {unit_symbol!r} is unknown, allowed are {', '.join(_UNIT_SYMBOLS)}"
         )
     return Fraction(10) ** exponent, _UNIT_SYMBOLS[rest][1]
 
@@ -211,7 +221,7 @@ UNITS: Mapping[str, Unit] = {
 CELSIUS_UNIT = "degC"
 CELSIUS_ZERO_IN_KELVIN = 273.15
 """Display unit of temperatures in FMUs, and its zero point [K]; files and pages use kelvin."""
-LUBRICANT_TEMPERATURES = 193.15, 473.15
+LUBRICANT_TEMPERATURE_RANGE = 193.15, 473.15
 """Temperature range [K] in which lubricants work: -80 to 200 degrees C."""
 
 

@@ -13,72 +13,93 @@ import numpy as np
 from numpy.typing import NDArray
 
 NumberSequence: TypeAlias = Sequence[float] | NDArray[np.float64]
-_SIGNIFICANT_DIGITS = 7
+_CURVE_SIGNIFICANT_DIGITS = 7
 """Significant digits of the numbers of a curve: more than a screen resolves."""
 
 
 class Series(NamedTuple):
-    """Line or marks of a chart.
+    """Data series of a chart: a line or single markers.
 
-    name   : name of the series in the legend
-    x, y   : numbers of the points, in the units of the axes
-    marks  : kind of mark; empty: a line
-    dashed : whether the line is dashed
-    titles : text of each mark, shown under the pointer
+    series_name        : name of the series in the legend
+    x_values, y_values : coordinates of the points, in the units of the axes
+    marker_style       : "full" or "empty" markers; empty text: a line
+    is_dashed          : whether the line is dashed
+    marker_tooltips    : text of each marker, shown under the pointer
     """
 
-    name: str
-    x: NumberSequence
-    y: NumberSequence
-    marks: str = ""
-    dashed: bool = False
-    titles: Sequence[str] = ()
+    series_name: str
+    x_values: NumberSequence
+    y_values: NumberSequence
+    marker_style: str = ""
+    is_dashed: bool = False
+    marker_tooltips: Sequence[str] = ()
 
 
 class Panel(NamedTuple):
-    """One pair of axes: title, axis labels with units, series; `log`: logarithmic x axis."""
+    """One pair of axes of a chart: title, axis labels with units, data series."""
 
-    title: str
-    x: str
-    y: str
-    series: Sequence[Series]
-    log: bool = False
+    panel_title: str
+    x_axis_label: str
+    y_axis_label: str
+    chart_series: Sequence[Series]
+    has_log_x_axis: bool = False
 
 
-def encode_panels(panels: Sequence[Panel]) -> str:
-    """Encode panels of a chart, side by side, as JSON that is safe inside an HTML page."""
+def encode_panels(chart_panels: Sequence[Panel]) -> str:
+    """Encode the panels of a chart, drawn side by side, as JSON that is safe inside an HTML page."""
 
-    def round_numbers(values: Any) -> list[float]:
-        """Round the numbers of a curve to _SIGNIFICANT_DIGITS."""
-        return [float(f"{x:.{_SIGNIFICANT_DIGITS}g}") for x in np.asarray(values, dtype=np.float64).tolist()]
+    def round_numbers(curve_values: Any) -> list[float]:
+        """Round the coordinates of a curve to _CURVE_SIGNIFICANT_DIGITS significant digits."""
+        return [
+            float(f"{x:.{_CURVE_SIGNIFICANT_DIGITS}g}")
+            for x in np.asarray(curve_values, dtype=np.float64).tolist()
+        ]
 
     def encode_series(chart_series: Series) -> dict[str, Any]:
-        """Encode one line or its marks as a JSON object."""
-        return chart_series._asdict() | {
-            "x": round_numbers(chart_series.x),
-            "y": round_numbers(chart_series.y),
-            "titles": list(chart_series.titles) or None,
+        """Encode one data series as a JSON object with the keys that the script of the chart reads."""
+        return {
+            "name": chart_series.series_name,
+            "x": round_numbers(chart_series.x_values),
+            "y": round_numbers(chart_series.y_values),
+            "marks": chart_series.marker_style,
+            "dashed": chart_series.is_dashed,
+            "titles": list(chart_series.marker_tooltips) or None,
         }
 
-    rows = [panel._asdict() | {"series": [encode_series(s) for s in panel.series]} for panel in panels]
+    rows = [
+        {
+            "title": panel.panel_title,
+            "x": panel.x_axis_label,
+            "y": panel.y_axis_label,
+            "series": [encode_series(s) for s in panel.chart_series],
+            "log": panel.has_log_x_axis,
+        }
+        for panel in chart_panels
+    ]
     return json.dumps(rows, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
 
 
-def make_figure(panels: Sequence[Panel]) -> str:
-    """Make the HTML element of a chart with panels, for a page that contains `read_script("figures")`."""
-    return f'<div class="figure"><script type="application/json">{encode_panels(panels)}</script></div>'
+def make_chart_element(chart_panels: Sequence[Panel]) -> str:
+    """HTML element of a chart with panels, for a page that contains `read_chart_script("figures")`."""
+    chart_json = encode_panels(chart_panels)
+    return f'<div class="figure"><script type="application/json">{chart_json}</script></div>'
 
 
-def read_script(*script_names: str) -> str:
-    """JavaScript that draws charts; the name `figures` adds code for all page elements of class `figure`."""
-    return '"use strict";\n' + "".join(_read_file(f"{name}.js") for name in ("text", "chart", *script_names))
+def read_chart_script(*script_names: str) -> str:
+    """Read the JavaScript that draws charts, and further scripts of this folder by name.
+
+    The script `figures` draws a chart in each page element of class `figure`.
+    """
+    return '"use strict";\n' + "".join(
+        _read_chart_file(f"{name}.js") for name in ("text", "chart", *script_names)
+    )
 
 
-def read_style() -> str:
-    """Read the CSS of colours, charts and tables, the same on all pages."""
-    return _read_file("chart.css")
+def read_chart_style() -> str:
+    """Read the CSS for colours, charts and tables, which all HTML pages share."""
+    return _read_chart_file("chart.css")
 
 
-def _read_file(file_name: str) -> str:
-    """Read the text of a file in the folder of this module."""
+def _read_chart_file(file_name: str) -> str:
+    """Read a script or style sheet in the folder of this module."""
     return Path(__file__).with_name(file_name).read_text(encoding="utf-8")

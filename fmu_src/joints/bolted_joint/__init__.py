@@ -12,8 +12,12 @@ import numpy as np
 
 from jointfmu.joints.bolted_joint.bodies import MODAL_DISPLACEMENT_DECIMALS, MemberModes
 from jointfmu.joints.bolted_joint.bolts import bolt_force_per_moment, bolt_positions
-from jointfmu.joints.bolted_joint.contact import MAX_PATCHES_PER_POINT, TRANSFER_DECIMALS, force_transfer
-from jointfmu.joints.bolted_joint.joint import MAX_POINTS, contact_points, find_friction_patches
+from jointfmu.joints.bolted_joint.contact import (
+    FORCE_TRANSFER_DECIMALS,
+    MAX_PATCHES_PER_POINT,
+    force_transfer,
+)
+from jointfmu.joints.bolted_joint.joint import MAX_CONTACT_POINTS, contact_points, find_friction_patches
 from jointfmu.joints.bolted_joint.law import MAX_MODES, AnyBoltedJoint, ElasticBodies
 from jointfmu.joints.bolted_joint.outputs import sum_cycle_energies
 from jointfmu.mechanics.footprint.distribution import (
@@ -21,115 +25,138 @@ from jointfmu.mechanics.footprint.distribution import (
     MAX_PATCHES,
     PressureDistribution,
 )
-from jointfmu.mechanics.sliders import FOUNDATION_SLIDERS, height_offsets, torsion_directions
+from jointfmu.mechanics.sliders import FOUNDATION_SLIDER_COUNT, height_offsets, torsion_directions
 from jointfmu.quantity import Array
 
-from ...joint_parts import FmuParts, RampPanel, chart, make_native_definition_loader
+from ...joint_parts import FmuBuildData, RampPanel, chart, make_native_definition_loader
 from ...joint_parts.data import DataConversion, DataTable
-from ...joint_parts.interface_table import replace_points
+from ...joint_parts.interface_table import replace_table_points
 from ...joint_parts.terminals import make_rotation_flange, make_translation_flange
 
-_REPLACED_SECTIONS = ("pattern.", "plate.", "field.", "bodies.")
-"""Sections of a parameter file whose values the C code reads from the data block instead."""
+_SECTIONS_READ_FROM_DATA = ("pattern.", "plate.", "field.", "bodies.")
+"""Sections of a parameter file whose values the C code reads from data.c at run time."""
 MAX_RIGID_SIDE_BOLTS = 64
 """Largest number of bolts [1] of a joint with rigid sides in compiled models; more need a compiler."""
-_ONE_POINT_FIELD = {"share": (1.0,), "x": (0.0,), "y": (0.0,), "equal": (1.0,), "tilt": (0.0,)}
+_SINGLE_POINT_NODAL_FIELD = {"share": (1.0,), "x": (0.0,), "y": (0.0,), "equal": (1.0,), "tilt": (0.0,)}
 """Nodal field with a single point, with which the C code is generated."""
 
 
-def _convert_parameters(joint: AnyBoltedJoint) -> Mapping[str, object]:
-    """Convert the parameters for the C code generation: one contact point, mean positions of the bolts."""
+def _convert_parameters(joint_parameters: AnyBoltedJoint) -> Mapping[str, object]:
+    """Parameters {name: value} for generating the C code, which reads contact points and modes at run time.
+
+    Placeholders are a pressure field with one contact point and, for elastic members, one mode.
+    """
     own = {
         name: value
-        for name, value in replace_points(joint).items()
-        if not name.startswith(_REPLACED_SECTIONS)
+        for name, value in replace_table_points(joint_parameters).items()
+        if not name.startswith(_SECTIONS_READ_FROM_DATA)
     }
-    spread = dict(zip(BOLT_POSITION_MEAN_NAMES, joint.pattern.bolt_position_means, strict=True))
+    spread = dict(zip(BOLT_POSITION_MEAN_NAMES, joint_parameters.pattern.bolt_position_means, strict=True))
     points: dict[str, object] = {
-        f"field.{name}": value for name, value in (_ONE_POINT_FIELD | spread).items()
+        f"field.{name}": value for name, value in (_SINGLE_POINT_NODAL_FIELD | spread).items()
     }
     return (
-        own | points | (_make_single_mode_bodies(round(joint.n_bolts)) if joint.has_elastic_members else {})
+        own
+        | points
+        | (
+            _make_single_mode_bodies(round(joint_parameters.n_bolts))
+            if joint_parameters.has_elastic_members
+            else {}
+        )
     )
 
 
 def _make_single_mode_bodies(bolt_count: int) -> dict[str, object]:
-    """Section [bodies] with one mode, one friction patch and a number of bolts, all displacements zero."""
+    """Elastic members (section [bodies]) with one mode without displacements, for generating the C code."""
     stated = [item.name for item in fields(ElasticBodies) if item.default is MISSING]
     values: dict[str, tuple[float, ...]] = dict.fromkeys(stated, (0.0,))
     values |= {"stiffness": (1.0,), **dict.fromkeys(("stretch", "bolt_x", "bolt_y"), (0.0,) * bolt_count)}
     return {f"bodies.{name}": value for name, value in values.items()}
 
 
-def _make_data_tables(joint: AnyBoltedJoint) -> Mapping[str, DataTable]:
-    """Make {name: table} of numbers of a bolted joint that its C code reads as data.
+def _make_data_tables(joint_parameters: AnyBoltedJoint) -> Mapping[str, DataTable]:
+    """Make the tables {name: table} of numbers that the C code of a bolted joint reads as data.
 
     The tables have the contact points, friction patches, sliders, bolts and modes of the members.
     """
-    patches = find_friction_patches(joint.pattern)
+    patches = find_friction_patches(joint_parameters.pattern)
     return {
-        "points": DataTable(_distribution_rows(contact_points(joint.pattern)), MAX_POINTS),
-        "patches": DataTable(np.column_stack([_distribution_rows(patches), patches.radius]), MAX_PATCHES),
-        "torsion_directions": DataTable(torsion_directions(FOUNDATION_SLIDERS), 2),
+        "points": DataTable(
+            _make_pressure_distribution_rows(contact_points(joint_parameters.pattern)), MAX_CONTACT_POINTS
+        ),
+        "patches": DataTable(
+            np.column_stack([_make_pressure_distribution_rows(patches), patches.slider_circle_radius]),
+            MAX_PATCHES,
+        ),
+        "torsion_directions": DataTable(torsion_directions(FOUNDATION_SLIDER_COUNT), 2),
         "height_offsets": DataTable(height_offsets(patches.preload_pressure_ratio)[:, None], MAX_PATCHES),
-        **_make_body_tables(joint),
+        **_make_body_tables(joint_parameters),
     }
 
 
-def _make_body_tables(joint: AnyBoltedJoint) -> Mapping[str, DataTable]:
-    """Make {name: table} of the elastic members: modal stiffness, bolts, displacements, pressure transfer.
+def _make_body_tables(joint_parameters: AnyBoltedJoint) -> Mapping[str, DataTable]:
+    """Make the data tables of elastic members: modes with their displacements, bolts, pressure transfer.
 
-    A row has the displacements of one point, patch or bolt by all modes, as 2-byte integers. A joint with
-    rigid sides reserves one row for each table, and MAX_RIGID_SIDE_BOLTS rows for the bolts.
+    A row of displacements has one point, patch or bolt, and a column for each mode, as 2-byte integers. A
+    joint with rigid sides reserves one row for each table, and MAX_RIGID_SIDE_BOLTS rows for the bolts.
     """
-    modes, most = MemberModes.for_rigid_bodies(0, 0, 0), (1, 1, 1, 1)
-    bolts = bolt_positions(joint)
+    modes, most = MemberModes.from_rigid_members(0, 0, 0), (1, 1, 1, 1)
+    bolts = bolt_positions(joint_parameters)
     pressing, pairs = np.zeros((0, 4)), 1
-    if joint.has_elastic_members:
-        assert isinstance(joint.bodies, ElasticBodies)
-        points, patches = contact_points(joint.pattern), find_friction_patches(joint.pattern)
-        modes = MemberModes.for_bodies(joint.bodies, len(points.area_share), patches.position)
-        pressing = _pressure_transfer_table(force_transfer(points, patches))
-        pairs = MAX_PATCHES_PER_POINT * MAX_POINTS + MAX_PATCHES
-        most = MAX_MODES, MAX_POINTS, MAX_PATCHES, len(bolts)
+    if joint_parameters.has_elastic_members:
+        assert isinstance(joint_parameters.bodies, ElasticBodies)
+        points, patches = (
+            contact_points(joint_parameters.pattern),
+            find_friction_patches(joint_parameters.pattern),
+        )
+        modes = MemberModes.from_elastic_bodies(
+            joint_parameters.bodies, len(points.area_share), patches.position
+        )
+        pressing = _make_pressure_transfer_rows(force_transfer(points, patches))
+        pairs = MAX_PATCHES_PER_POINT * MAX_CONTACT_POINTS + MAX_PATCHES
+        most = MAX_MODES, MAX_CONTACT_POINTS, MAX_PATCHES, len(bolts)
     axes = (f"patch_displacement_{axis}" for axis in ("x", "y", "around"))
     patch = dict(zip(axes, modes.patch_displacement, strict=True))
-    moved = {"opening": modes.opening, **patch, "bolt_elongation": modes.bolt_elongation}
+    moved = {"opening": modes.point_opening, **patch, "bolt_elongation": modes.bolt_elongation}
     room = dict(zip(moved, (most[1], *(most[2],) * 3, most[3]), strict=True))
     return {
-        "modal_stiffness": DataTable(modes.stiffness[:, None], most[0]),
+        "modal_stiffness": DataTable(modes.modal_stiffness[:, None], most[0]),
         "bolts": DataTable(
             np.column_stack([bolts, bolt_force_per_moment(bolts)]),
-            len(bolts) if joint.has_elastic_members else max(len(bolts), MAX_RIGID_SIDE_BOLTS),
+            len(bolts) if joint_parameters.has_elastic_members else max(len(bolts), MAX_RIGID_SIDE_BOLTS),
         ),
         **{
-            name: DataTable(_encode_modal_rows(rows), room[name], is_integer=True)
+            name: DataTable(_encode_modal_displacements(rows), room[name], is_integer=True)
             for name, rows in moved.items()
         },
         "pressure_transfer": DataTable(pressing, pairs, is_integer=True),
     }
 
 
-def _pressure_transfer_table(force_shares: Any) -> Any:
-    """Rows (n, 4) of the transfer of normal force from contact points to friction patches.
+def _make_pressure_transfer_rows(patch_force_shares: Any) -> Any:
+    """Rows (n, 4) that transfer normal force from contact points to friction patches.
 
-    Each row has index of the patch, index of the point, share in units of the last decimal, and 0.
+    A row has the index of the patch, the index of the point, the share of the point's force that the patch
+    takes (an integer, in units of the last stored decimal), and 0.
     """
-    patch, point = np.nonzero(force_shares)
-    digits = np.round(force_shares[patch, point] * 10.0**TRANSFER_DECIMALS)
+    patch, point = np.nonzero(patch_force_shares)
+    digits = np.round(patch_force_shares[patch, point] * 10.0**FORCE_TRANSFER_DECIMALS)
     return np.column_stack([patch, point, digits, 0 * patch])
 
 
-def _encode_modal_rows(modal_rows: Any) -> Any:
-    """Encode modal displacements of the members in units of the last decimal; zeros up to MAX_MODES modes."""
+def _encode_modal_displacements(modal_displacements: Any) -> Any:
+    """Encode modal displacements as integers in units of their last decimal, with zeros up to MAX_MODES."""
     return np.pad(
-        np.round(modal_rows * 10.0**MODAL_DISPLACEMENT_DECIMALS),
-        ((0, 0), (0, MAX_MODES - modal_rows.shape[1])),
+        np.round(modal_displacements * 10.0**MODAL_DISPLACEMENT_DECIMALS),
+        ((0, 0), (0, MAX_MODES - modal_displacements.shape[1])),
     )
 
 
-def _distribution_rows(pressure_distribution: PressureDistribution) -> Any:
-    """Rows (n, 5) of the contact points: area share, x, y, and both pressure ratios."""
+def _make_pressure_distribution_rows(pressure_distribution: PressureDistribution) -> Any:
+    """Rows (n, 5) of contact points: share of the contact area, x, y [m], two pressures over mean pressure.
+
+    The pressures are those under equal bolt forces, and those that a moment adds.
+    """
     return np.column_stack(
         [
             pressure_distribution.area_share,
@@ -140,42 +167,43 @@ def _distribution_rows(pressure_distribution: PressureDistribution) -> Any:
     )
 
 
-LOOP_OVER_RAMP_END_PRELOAD = 0.3
+LOOP_PRELOAD_OVER_RAMP_END_PRELOAD = 0.3
 """Preload of the drawn friction loops over the preload at the end of the load ramp [1]."""
 LOOP_AMPLITUDES_OVER_SLIP_DISPLACEMENT = (0.06, 0.12, 0.22, 0.4)
 """Amplitudes of the drawn loops over the displacement at which a point with the mean approach slips [1]."""
-_CURVE_POINT_COUNT = 13
+_LOOP_BRANCH_POINT_COUNT = 13
 """Number of points of a branch of the drawn friction loops [1]."""
 
 
-def _draw_friction_loops(spring: Any, ramp_end_preload: float) -> list[chart.Panel]:
-    """Draw friction loops with several amplitudes, and their loss factor over the amplitude.
+def _draw_friction_loops(tabulated_joint: Any, ramp_end_preload: float) -> list[chart.Panel]:
+    """Draw hysteresis loops of friction with several amplitudes, and their loss factor over the amplitude.
 
     ramp_end_preload : preload at the end of the load ramp [N]
     """
-    left = spring.joint.embedding
-    preload = left + LOOP_OVER_RAMP_END_PRELOAD * (ramp_end_preload - left)
-    approach = spring.preloaded_approach(preload, 0.0)
-    foundation, share = spring.friction_law.foundation(), spring.points.area_share
-    mean = share @ np.maximum(approach - spring.curve.displacement[0], 0.0)
+    left = tabulated_joint.joint.embedding
+    preload = left + LOOP_PRELOAD_OVER_RAMP_END_PRELOAD * (ramp_end_preload - left)
+    approach = tabulated_joint.preloaded_approach(preload, 0.0)
+    foundation, share = tabulated_joint.friction_law.foundation(), tabulated_joint.points.area_share
+    mean = share @ np.maximum(approach - tabulated_joint.curve.displacement[0], 0.0)
     slips = foundation.friction_coefficient / foundation.stiffness_ratio * float(mean)
 
-    def virgin_force(displacement: Array) -> Array:
-        """Shear force [N] in first loading at displacements (...) [m]."""
+    def shear_force_at_first_loading(shear_displacement: Array) -> Array:
+        """Shear force (...) [N] in first loading, at shear displacements (...) [m]."""
         return np.asarray(
-            spring.joint.A_0 * (foundation.virgin_traction(approach, displacement[:, None]) @ share)
+            tabulated_joint.joint.A_0
+            * (foundation.virgin_traction(approach, shear_displacement[:, None]) @ share)
         )
 
     lines = []
     for part in reversed(LOOP_AMPLITUDES_OVER_SLIP_DISPLACEMENT):
-        u = part * slips * np.linspace(-1.0, 1.0, 2 * _CURVE_POINT_COUNT + 1)
-        top = virgin_force(u[-1:])
-        back = top - 2.0 * virgin_force(0.5 * (u[-1] - u))
+        u = part * slips * np.linspace(-1.0, 1.0, 2 * _LOOP_BRANCH_POINT_COUNT + 1)
+        top = shear_force_at_first_loading(u[-1:])
+        back = top - 2.0 * shear_force_at_first_loading(0.5 * (u[-1] - u))
         shift, loop = np.concatenate([u, u[::-1]]), np.concatenate([back, -back])
         lines.append(chart.Series(f"amplitude {u[-1] * 1e6:.3g} µm", shift * 1e6, loop / 1e3))
-    u = LOOP_AMPLITUDES_OVER_SLIP_DISPLACEMENT[-1] * slips * np.linspace(0.0, 1.0, _CURVE_POINT_COUNT)
-    lines.append(chart.Series("first shear", u * 1e6, virgin_force(u) / 1e3, dashed=True))
-    size = slips * np.geomspace(0.01, 2.0, _CURVE_POINT_COUNT)
+    u = LOOP_AMPLITUDES_OVER_SLIP_DISPLACEMENT[-1] * slips * np.linspace(0.0, 1.0, _LOOP_BRANCH_POINT_COUNT)
+    lines.append(chart.Series("first shear", u * 1e6, shear_force_at_first_loading(u) / 1e3, is_dashed=True))
+    size = slips * np.geomspace(0.01, 2.0, _LOOP_BRANCH_POINT_COUNT)
     sums = [sum_cycle_energies(foundation, share, approach, np.full(approach.size, a)) for a in size]
     loss = [s["loop_work"] / (2.0 * np.pi * s["loop_energy"]) for s in sums]
     over = chart.Series("eta_loop", size * 1e6, loss)
@@ -192,12 +220,12 @@ _TRANSLATION_FLANGES = zip("xyz", (75.0, 45.0, 15.0), strict=True)
 _ROTATION_FLANGES = zip("xyz", (-15.0, -45.0, -75.0), strict=True)
 """Axes of the flanges for rotations, with their heights in the icon."""
 
-FMU_PARTS = FmuParts(
-    folder=Path(__file__).parent,
-    native=make_native_definition_loader(__name__),
-    data_conversion=DataConversion(_convert_parameters, make_tables=_make_data_tables),
+FMU_BUILD_DATA = FmuBuildData(
+    joint_folder=Path(__file__).parent,
+    load_native_definition=make_native_definition_loader(__name__),
+    data_conversion=DataConversion(_convert_parameters, make_data_tables=_make_data_tables),
     chart_drawings={"BoltedJoint": {"loops": _draw_friction_loops}},
-    ramp_panels={
+    load_ramp_panels={
         "BoltedJoint": (RampPanel("preload", ("K_zz", "K_xx")), RampPanel("preload", ("C_zz", "C_xx")))
     },
     terminals={

@@ -28,8 +28,9 @@ static void set_parts(Joint *joint, const double constants[7])
     model->friction.mu = constants[1];
     model->friction.stiffness_ratio = constants[2];
     model->bolts.stiffness = constants[4];
-    model->bolts.count = constants[6] / (double)data.n_bolts;
-    model->bolts.lift_off = BOLT_LIFT_OFF_RATIO * model->contact.law.closing_end_pressure * model->contact.area;
+    model->bolts.bolts_per_position = constants[6] / (double)data.n_bolts;
+    model->bolts.lift_off_force =
+        LIFT_OFF_FORCE_OVER_CLOSING_END_FORCE * model->contact.law.closing_end_pressure * model->contact.area;
     model->equilibrium.assembly = (JointAssembly){&model->contact, &model->bodies, &model->bolts, &model->friction};
     model->equilibrium.start.is_known = model->equilibrium.end.is_known = false;
 }
@@ -86,7 +87,7 @@ static bool is_preload_state(const JointModel *model, const double *q)
     return q[S_Z] == 0.0 && q[THETA_X] == 0.0 && q[THETA_Y] == 0.0 && (model->friction.has_history || !is_sheared);
 }
 
-/* Points and patches between elastic bodies. */
+/* Points and patches between elastic members. */
 static bool evaluate_elastic(JointModel *model, const double *inputs, const double *history, double *after,
                              Text *reason)
 {
@@ -96,7 +97,7 @@ static bool evaluate_elastic(JointModel *model, const double *inputs, const doub
     return true;
 }
 
-/* Points and patches between rigid bodies. */
+/* Points and patches between rigid members. */
 static bool evaluate_rigid(JointModel *model, const double *q, const double *history, double *after, Text *reason)
 {
     Friction *friction = &model->friction;

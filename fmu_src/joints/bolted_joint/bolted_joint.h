@@ -16,7 +16,7 @@ typedef struct {
     Bolts bolts;
     Contact contact;
     Friction friction;
-    Equilibrium equilibrium; /* of elastic bodies */
+    Equilibrium equilibrium; /* of elastic members */
 } JointModel;
 
 #endif

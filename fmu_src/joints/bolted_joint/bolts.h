@@ -10,12 +10,13 @@
 
 typedef struct {
     double stiffness; /* of each bolt [N/m] */
-    double count;     /* bolts at each position [1] */
-    double lift_off;  /* magnitude of the force [N] up to which a bolt is at lift-off */
+    double bolts_per_position; /* bolts at each position [1] */
+    double lift_off_force; /* magnitude of the force [N] up to which a bolt is at lift-off */
     double preload_force[MAX_BOLTS]; /* of each bolt [N] */
     bool is_unloaded[MAX_BOLTS];     /* the moment would make the preload force negative */
     double preload_rate[MAX_BOLTS];  /* rate of the preload force along the last seed */
-    /* In the last trial: gap under the head [m], force [N], and the fraction of the stiffness that acts [1]. */
+    /* At the last trial: gap under the head [m], force [N], fraction of the bolt stiffness that acts [1]: times the
+     * stiffness it is the active bolt stiffness of Python. */
     double gap[MAX_BOLTS], force[MAX_BOLTS], active_fraction[MAX_BOLTS];
 } Bolts;
 

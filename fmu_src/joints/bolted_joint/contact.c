@@ -23,19 +23,19 @@ void transfer_pressure(const Contact *contact, const double *points, double *pat
     }
 }
 
-static inline double point_approach(const Contact *contact, const double *modal_opening, int i, const double *q)
+static inline double point_approach(const Contact *contact, const double *elastic_opening, int i, const double *q)
 {
-    return contact->preload.approach[i] - (opening_at(data.points[i], q) + modal_opening[i]);
+    return contact->preload.approach[i] - (opening_at(data.points[i], q) + elastic_opening[i]);
 }
 
 /* Approach of a patch whose points are all open: the approach of the nearest point. */
-static double open_approach(const Contact *contact, const double *modal_opening, int j, const double *q)
+static double open_approach(const Contact *contact, const double *elastic_opening, int j, const double *q)
 {
     double nearest = -INFINITY;
     for (int e = 0; e < (int)data.n_pressure_transfer; e++)
         if (data.pressure_transfer[e][TRANSFER_PATCH] == j)
             nearest = fmax(nearest,
-                           point_approach(contact, modal_opening, data.pressure_transfer[e][TRANSFER_POINT], q));
+                           point_approach(contact, elastic_opening, data.pressure_transfer[e][TRANSFER_POINT], q));
     return fmin(nearest, contact->curve->start.x);
 }
 
@@ -51,14 +51,14 @@ static void invert_curve(const Curve *curve, int n, bool leave_out_open, double 
             approach[i] = curve_inverse(curve, pressure[i], &segment[ELASTIC ? i : 0], &pressure[i]);
 }
 
-void evaluate_patches(Contact *contact, const double *modal_opening, const double *q)
+void evaluate_patches(Contact *contact, const double *elastic_opening, const double *q)
 {
     if (ELASTIC) {
         double transferred[MAX_PATCHES];
         transfer_pressure(contact, contact->pressure, transferred);
         for (int j = 0; j < n_patches(); j++)
             if (!(transferred[j] > 0.0))
-                contact->patch_approach[j] = open_approach(contact, modal_opening, j, q);
+                contact->patch_approach[j] = open_approach(contact, elastic_opening, j, q);
         invert_curve(contact->curve, n_patches(), true, transferred, contact->patch_approach);
         return;
     }
@@ -75,8 +75,8 @@ static void preload_rows(const Contact *contact, int n, const double *points, in
 {
     for (int i = 0; i < n; i++) {
         const double *point = points + i * columns;
-        const double x[4] = {point[PRELOAD_SHAPE], point[MOMENT_SHAPE], bolts[0], bolts[1]};
-        shaped_pressure(x, contact->c, &pressure[i]);
+        const double x[4] = {point[PRELOAD_PRESSURE_RATIO], point[MOMENT_PRESSURE_RATIO], bolts[0], bolts[1]};
+        superposed_pressure(x, contact->c, &pressure[i]);
     }
     invert_curve(contact->curve, n, false, pressure, approach);
 }
@@ -134,7 +134,7 @@ typedef struct {
     double p[POINT_BATCH], k[POINT_BATCH], works[POINT_BATCH][N_LAW_STATE];
 } PointBatch;
 
-static inline bool evaluate_batch(const Contact *contact, const double *modal_opening, const double *q, int first,
+static inline bool evaluate_batch(const Contact *contact, const double *elastic_opening, const double *q, int first,
                                   int n, bool with_work, PointBatch *batch, Text *reason)
 {
     const Curve *curve = contact->curve;
@@ -143,7 +143,7 @@ static inline bool evaluate_batch(const Contact *contact, const double *modal_op
     double approach[POINT_BATCH], at[POINT_BATCH];
     int segment[POINT_BATCH];
     for (int i = 0; i < n; i++) {
-        const double x = point_approach(contact, modal_opening, first + i, q);
+        const double x = point_approach(contact, elastic_opening, first + i, q);
         approach[i] = x;
         const double inside = x < begin ? begin : (x < end ? x : begin);
         segment[i] = curve_find_segment(curve, inside);
@@ -169,12 +169,12 @@ static inline bool evaluate_batch(const Contact *contact, const double *modal_op
     return true;
 }
 
-bool evaluate_points(Contact *contact, const double *modal_opening, const double *q, bool with_work, Text *reason)
+bool evaluate_points(Contact *contact, const double *elastic_opening, const double *q, bool with_work, Text *reason)
 {
     PointBatch batch;
     for (int first = 0; first < n_points(); first += POINT_BATCH) {
         const int n = n_points() - first < POINT_BATCH ? n_points() - first : POINT_BATCH;
-        if (!evaluate_batch(contact, modal_opening, q, first, n, with_work, &batch, reason))
+        if (!evaluate_batch(contact, elastic_opening, q, first, n, with_work, &batch, reason))
             return false;
         memcpy(contact->pressure + first, batch.p, (size_t)n * sizeof *batch.p);
         memcpy(contact->stiffness + first, batch.k, (size_t)n * sizeof *batch.k);
@@ -208,22 +208,23 @@ void contact_tabulate(Contact *contact)
 double preload_approach_rate(const Contact *contact, const double *point, const double bolts[4], double approach,
                              double *stiffness)
 {
-    const double x[6] = {point[PRELOAD_SHAPE], point[MOMENT_SHAPE], bolts[0], bolts[1], bolts[2], bolts[3]};
+    const double x[6] = {point[PRELOAD_PRESSURE_RATIO], point[MOMENT_PRESSURE_RATIO], bolts[0], bolts[1],
+                         bolts[2], bolts[3]};
     double rate, y[2];
     *stiffness = 0.0;
     if (bolts[2] == 0.0 && bolts[3] == 0.0)
         return 0.0;
-    shaped_pressure_seed(x, contact->c, &rate);
+    superposed_pressure_seed(x, contact->c, &rate);
     curve_evaluate(contact->curve, approach, 1, y);
     *stiffness = y[1];
     return y[1] > 0.0 ? rate / y[1] : 0.0;
 }
 
-bool evaluate_derivatives(Contact *contact, const double *modal_opening, const double *q, Text *reason)
+bool evaluate_derivatives(Contact *contact, const double *elastic_opening, const double *q, Text *reason)
 {
     for (int i = 0; i < n_points(); i++) {
         PointRate *rate = &contact->rate[i];
-        const double approach = point_approach(contact, modal_opening, i, q);
+        const double approach = point_approach(contact, elastic_opening, i, q);
         double works[N_LAW_STATE];
         if (!point_state(contact, approach, 4, rate->derivatives, works, rate->work_slope, reason))
             return false;
@@ -231,13 +232,13 @@ bool evaluate_derivatives(Contact *contact, const double *modal_opening, const d
     return true;
 }
 
-void set_point_rates(Contact *contact, const double *modal_opening_rate, const double *q_rate, const double bolts[4])
+void set_point_rates(Contact *contact, const double *elastic_opening_rate, const double *q_rate, const double bolts[4])
 {
     for (int i = 0; i < n_points(); i++) {
         PointRate *rate = &contact->rate[i];
         const double *point = data.points[i], approach = contact->preload.approach[i];
         rate->preload_approach = preload_approach_rate(contact, point, bolts, approach, &rate->preload_stiffness);
-        rate->approach = rate->preload_approach - (opening_at(point, q_rate) + modal_opening_rate[i]);
+        rate->approach = rate->preload_approach - (opening_at(point, q_rate) + elastic_opening_rate[i]);
     }
 }
 

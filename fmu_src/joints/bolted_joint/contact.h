@@ -1,5 +1,6 @@
 /* Repeats contact.py of the package: pressure and stiffness of the points at an opening, the preload state, and the
- * transfer of pressure to the patches. */
+ * transfer of pressure to the patches. Approach 0: end of the closing of the contact, where the contact law begins. At
+ * a negative approach the contact is closing, or open. */
 #ifndef JOINTFMU_CONTACT_H
 #define JOINTFMU_CONTACT_H
 
@@ -14,7 +15,7 @@
 
 enum { TRANSFER_PATCH, TRANSFER_POINT, TRANSFER_SHARE }; /* columns of `data.pressure_transfer` */
 
-/* The contact at tightening, for one preload per bolt [N] and moment [N.m]. */
+/* Contact state under preload alone, for one preload per bolt [N] and moment [N.m]. */
 typedef struct {
     bool is_current;
     double preload, moment;
@@ -23,8 +24,9 @@ typedef struct {
     double sums[3]; /* sums over the points of share times pressure [Pa], times pressure and x, and y [N/m] */
 } PreloadState;
 
-/* A point: pressure with four derivatives by the approach, derivatives of its works [J/m]. Along a seed of preload,
- * moment and q: rate of the approach [m]; stiffness [Pa/m] and rate of the approach [m] in the preload state. */
+/* Derivatives at a contact point. By the approach: pressure with four derivatives, derivatives of the works [J/m].
+ * Along a seed of preload, moment and q: rate of the approach [m]. In the preload state: stiffness [Pa/m], rate of the
+ * approach [m]. */
 typedef struct {
     double derivatives[5], work_slope[N_LAW_STATE];
     double approach, preload_stiffness, preload_approach;
@@ -52,21 +54,21 @@ void contact_tabulate(Contact *contact);
 bool set_preload_state(Contact *contact, double preload, double moment);
 /* Transfer pressures (or stiffnesses, rates) of the points to the patches. */
 void transfer_pressure(const Contact *contact, const double *points, double *patches);
-/* Pressure and stiffness of the points at q and a modal opening (n) [m], their work too if `with_work`.
- * false: refused, with the reason. */
-bool evaluate_points(Contact *contact, const double *modal_opening, const double *q, bool with_work, Text *reason);
+/* Pressure and stiffness of the points at a displacement q; `elastic_opening` (n) [m]: opening of the points by the
+ * deformation of the members. If `with_work`, also their work [J]. false: refused, with the reason. */
+bool evaluate_points(Contact *contact, const double *elastic_opening, const double *q, bool with_work, Text *reason);
 /* Patch approach [m] that gives the transferred pressure. If all points of a patch are open: the approach of the
- * nearest point. Between rigid bodies it follows from q. */
-void evaluate_patches(Contact *contact, const double *modal_opening, const double *q);
-/* Derivatives of all points by their approaches, in `contact->rate`. */
-bool evaluate_derivatives(Contact *contact, const double *modal_opening, const double *q, Text *reason);
+ * nearest point. Between rigid members it follows from q. */
+void evaluate_patches(Contact *contact, const double *elastic_opening, const double *q);
+/* Set the pressure and work derivatives of all points by their approaches, in `contact->rate`. */
+bool evaluate_derivatives(Contact *contact, const double *elastic_opening, const double *q, Text *reason);
 /* Rates of the points along a seed; bolt pressures as `bolt_pressures` gives them, with their rates. */
-void set_point_rates(Contact *contact, const double *modal_opening_rate, const double *q_rate, const double bolts[4]);
+void set_point_rates(Contact *contact, const double *elastic_opening_rate, const double *q_rate, const double bolts[4]);
 /* Rate of the approach [m] of a point or patch in the preload state; and the stiffness [Pa/m] there. */
 double preload_approach_rate(const Contact *contact, const double *point, const double bolts[4], double approach,
                              double *stiffness);
 
-/* `point_state` beyond the ends of the table. */
+/* As `point_state`, at approaches beyond the ends of the table. */
 bool state_outside(const Contact *contact, double approach, int order, double *y, double *works, double *slopes,
                    Text *reason);
 

@@ -1,4 +1,4 @@
-/* Dense linear systems whose unknowns are the modal coordinates of elastic sides. */
+/* Dense linear systems whose unknowns are the modal coordinates of elastic members. */
 #ifndef JOINTFMU_DENSE_H
 #define JOINTFMU_DENSE_H
 
@@ -6,7 +6,7 @@
 
 #include "law.h"
 
-/* Stands before a loop whose iterations the compiler must not combine into vectors. */
+/* Forbid the compiler to vectorize the loop that follows. */
 #ifdef __clang__
 #define NOT_VECTORIZED _Pragma("clang loop vectorize(disable)")
 #else
@@ -17,7 +17,7 @@
 enum { LANES = 4, N_COLUMNS = MODES + LANES };
 _Static_assert(MODES % LANES == 0, "rows in fours");
 
-/* Sum of the products of two rows. */
+/* Dot product of the modal entries of two rows. */
 static inline double dense_dot(const double *a, const double *b)
 {
     double sum[LANES] = {0.0};

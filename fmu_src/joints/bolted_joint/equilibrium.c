@@ -10,8 +10,9 @@ _Static_assert((int)HISTORY_MODAL_COORDINATES == (int)HISTORY_NORMAL + 3 &&
                    (int)N_HISTORY == (int)HISTORY_TANGENT + 6 * MAX_PATCHES,
                "the end of a history, as in the key of a predictor");
 
-/* Derivatives of the opening of the patches, as the points that transfer pressure to them open. */
-static void set_modal_opening(Equilibrium *e)
+/* Derivatives of the patch opening: opening that changes the pressure of a patch as much as the points that transfer
+ * pressure to it do. */
+static void set_patch_opening_jacobian(Equilibrium *e)
 {
     const Contact *contact = e->assembly.contact;
     for (int j = 0, row = 0; j < n_patches(); j++) {
@@ -22,15 +23,16 @@ static void set_modal_opening(Equilibrium *e)
             const int i = data.pressure_transfer[row][TRANSFER_POINT];
             const double weight = contact->pressure_transfer[row] * contact->stiffness[i] * compliance;
             for (int k = 0; k < N_COLUMNS; k++)
-                sum[k] += weight * e->assembly.bodies->opening_jacobian[i][k];
+                sum[k] += weight * e->assembly.bodies->full_opening_jacobian[i][k];
         }
-        memcpy(e->modal_opening[j], sum, sizeof sum);
+        memcpy(e->patch_opening_jacobian[j], sum, sizeof sum);
     }
 }
 
 OPTIMIZE_FOR_SIZE
 
-/* Straight path of q from the end of a history to the inputs. */
+/* Straight path of q from the end of a history to the inputs. Preload, moment and temperature have their values at the
+ * end from the start of the step on. */
 typedef struct {
     const double *inputs, *history;
     double start[N_DISPLACEMENTS], end[N_DISPLACEMENTS];
@@ -55,8 +57,8 @@ static void sum_normal_stiffness(Equilibrium *e, int size)
     const Contact *contact = e->assembly.contact;
     const Bolts *bolts = e->assembly.bolts;
     const int sizes[2] = {n_points(), (int)data.n_bolt_elongation};
-    const double(*const rows[2])[N_COLUMNS] = {(const double(*)[N_COLUMNS])bodies->opening_jacobian,
-                                               (const double(*)[N_COLUMNS])bodies->elongation_jacobian};
+    const double(*const rows[2])[N_COLUMNS] = {(const double(*)[N_COLUMNS])bodies->full_opening_jacobian,
+                                               (const double(*)[N_COLUMNS])bodies->full_elongation_jacobian};
     memset(e->normal_stiffness, 0, sizeof e->normal_stiffness);
     for (int s = 0; s < 2; s++)
         for (int first = 0; first < sizes[s]; first += WEIGHTED_ROWS) {
@@ -78,10 +80,10 @@ static void sum_shear_stiffness(Equilibrium *e, int size, bool all)
     const Bodies *bodies = e->assembly.bodies;
     const double area = e->assembly.contact->area;
     const int n = n_patches();
-    const double(*rows[4])[N_COLUMNS] = {[3] = (const double(*)[N_COLUMNS])e->modal_opening};
+    const double(*rows[4])[N_COLUMNS] = {[3] = (const double(*)[N_COLUMNS])e->patch_opening_jacobian};
     double weights[MAX_PATCHES][4];
     for (int s = 0; s < 3; s++)
-        rows[s] = (const double(*)[N_COLUMNS])bodies->patch_jacobian[s];
+        rows[s] = (const double(*)[N_COLUMNS])bodies->full_tangential_jacobian[s];
     memset(e->shear_stiffness, 0, sizeof e->shear_stiffness);
     for (int d = 0; d < 3; d++) {
         for (int j = 0; j < n; j++)
@@ -116,11 +118,11 @@ static void residual_jacobian(Equilibrium *e, const double *history)
 {
     const Contact *contact = e->assembly.contact;
     const double first = contact->curve->start.x;
-    double deepest = -first; /* largest approach [m] at tightening, from first contact on */
+    double max_approach = -first; /* largest approach [m] at tightening, from first contact on */
     for (int j = 0; j < n_patches(); j++)
-        deepest = fmax(deepest, contact->preload.patch_approach[j] - first);
-    traction_derivatives(e->assembly.friction, TRACTION_DIFFERENCE_STEP * deepest, history, e->derivatives);
-    set_modal_opening(e);
+        max_approach = fmax(max_approach, contact->preload.patch_approach[j] - first);
+    traction_derivatives(e->assembly.friction, TRACTION_FINITE_DIFFERENCE_STEP * max_approach, history, e->derivatives);
+    set_patch_opening_jacobian(e);
     factorize_jacobian(e, MODES, true, &e->factors);
 }
 
@@ -134,7 +136,7 @@ static void residual_jacobian_on_side(Equilibrium *e, const double *history, con
             const SliderUpdate rate = update_rate(e->assembly.friction, j, history, after, units[c][0], units[c] + 1);
             memcpy(e->derivatives[j][c], rate.traction, sizeof e->derivatives[j][c]);
         }
-    set_modal_opening(e);
+    set_patch_opening_jacobian(e);
     factorize_jacobian(e, MODES, true, &e->factors);
 }
 
@@ -228,13 +230,14 @@ static double residual(const Equilibrium *e, const double *q, const double *moda
         bolt_force[b] = bolts->stiffness * (bolt_elongation(bodies, b, q, modal_coordinates) + bolts->gap[b]);
         forces += fabs(bolt_force[b]);
     }
-    dense_add_rows(use_avx, n_points(), normal, (const double(*)[N_COLUMNS])bodies->opening_jacobian, r);
+    dense_add_rows(use_avx, n_points(), normal, (const double(*)[N_COLUMNS])bodies->full_opening_jacobian, r);
     for (int d = 0; d < 3; d++)
-        dense_add_rows(use_avx, n_patches(), shear[d], (const double(*)[N_COLUMNS])bodies->patch_jacobian[d], r);
+        dense_add_rows(use_avx, n_patches(), shear[d], (const double(*)[N_COLUMNS])bodies->full_tangential_jacobian[d],
+                       r);
     dense_add_rows(use_avx, (int)data.n_bolt_elongation, bolt_force,
-                   (const double(*)[N_COLUMNS])bodies->elongation_jacobian, r);
-    return RELATIVE_TOLERANCE *
-           (forces + stiffness * opening * RIGID_OPENING_FORCE_FACTOR +
+                   (const double(*)[N_COLUMNS])bodies->full_elongation_jacobian, r);
+    return RELATIVE_RESIDUAL_TOLERANCE *
+           (forces + stiffness * opening * RIGID_OPENING_WEIGHT_IN_TOLERANCE +
             contact->area * contact->law.closing_end_pressure);
 }
 
@@ -272,7 +275,7 @@ static bool predict_by_tangent(Equilibrium *e, const LoadStep *step, double *rat
         if (!evaluate_normal(e, first, history + HISTORY_MODAL_COORDINATES, false, reason))
             return false;
         memcpy(tangent, history + HISTORY_TANGENT, sizeof tangent);
-        for (int j = 0; j < n_patches() && history[HISTORY_STATE] == (double)UNKNOWN; j++) {
+        for (int j = 0; j < n_patches() && history[HISTORY_STATE] == (double)BEFORE_FIRST_STEP; j++) {
             const Foundation *f = &e->assembly.friction->foundation[j];
             const PatchState state = patch_state(f, e->assembly.contact->preload.patch_approach[j], 0);
             stick_tangent(stick_stiffness(f, &state), tangent + 6 * j);
@@ -302,38 +305,42 @@ static void apply_broyden(Equilibrium *e, int newest)
 }
 
 /* Trial after a correction of the modal coordinates. While the energy slope at its end is too large, the correction is
- * shortened; it is dropped if the Jacobian belongs to an earlier trial. false: refused. */
+ * shortened; after MAX_LINE_SEARCH_TRIALS the last trial is taken, though it is too long. The correction is dropped if
+ * the Jacobian belongs to an earlier trial. false: refused. */
 static bool search_line(Equilibrium *e, LoadStep *step, const double *q, const double *correction,
                         bool jacobian_is_current, bool complete, double *modal_coordinates, double *r,
                         double *tolerance, bool *is_full, Text *reason)
 {
     double start[MODES], length = 1.0;
-    const double slope_0 = dense_dot(r, correction);
+    const double energy_slope_0 = dense_dot(r, correction);
     memcpy(start, modal_coordinates, sizeof start);
     *is_full = true;
-    for (int trial = 0; trial < MAX_LINE_SEARCH; trial++) {
+    for (int trial = 0; trial < MAX_LINE_SEARCH_TRIALS; trial++) {
         for (int k = 0; k < MODES; k++)
             modal_coordinates[k] = start[k] + length * correction[k];
         if (!evaluate_trial(e, step, q, modal_coordinates, complete, reason))
             return false;
         *tolerance = residual(e, q, modal_coordinates, r);
-        const double slope_1 = dense_dot(r, correction);
-        if (length == 0.0 || !(slope_1 > MAX_FINAL_OVER_INITIAL_ENERGY_SLOPE * fabs(slope_0)))
+        const double energy_slope_1 = dense_dot(r, correction);
+        if (length == 0.0 || !(energy_slope_1 > MAX_FINAL_OVER_INITIAL_ENERGY_SLOPE * fabs(energy_slope_0)))
             return true;
-        const double zero = slope_0 < 0.0 ? slope_0 / (slope_0 - slope_1) : 0.0; /* at zero energy slope, if any */
-        length *= jacobian_is_current ? fmax(zero, MIN_OVER_PREVIOUS_CORRECTION_LENGTH) : 0.0;
+        /* length at which the energy slope is zero, if any */
+        const double zero = energy_slope_0 < 0.0 ? energy_slope_0 / (energy_slope_0 - energy_slope_1) : 0.0;
+        length *= jacobian_is_current ? fmax(zero, MIN_SHORTENING_FACTOR) : 0.0;
         *is_full = false;
     }
     return true;
 }
 
-/* Equilibrium at a step fraction, starting from modal coordinates; `left` [N]: residual, if none is found. */
+/* Equilibrium at a step fraction, starting from modal coordinates; `remaining_norm` [N]: largest entry of the
+ * residual, if none is found. */
 static NewtonResult solve_newton(Equilibrium *e, LoadStep *step, double step_fraction, double *modal_coordinates,
-                                 double *left, Text *reason)
+                                 double *remaining_norm, Text *reason)
 {
     const double tolerance_factor = step_fraction == 1.0 ? 1.0 : INTERMEDIATE_TOLERANCE_FACTOR;
     const Factorization *factors = &e->start.factors; /* first Jacobian: at the start of the load step */
-    double q[N_DISPLACEMENTS], r[MODES], tolerance, last_norm = INFINITY;
+    double q[N_DISPLACEMENTS], r[MODES], tolerance;
+    double last_norm = INFINITY; /* the first iteration uses the given Jacobian */
     bool jacobian_is_current = false, is_full;
     displacement_at(step, step_fraction, q);
     if (!evaluate_trial(e, step, q, modal_coordinates, false, reason))
@@ -343,7 +350,7 @@ static NewtonResult solve_newton(Equilibrium *e, LoadStep *step, double step_fra
         const double norm = residual_norm(r);
         if (norm <= tolerance_factor * tolerance)
             return CONVERGED;
-        if (!(norm < JACOBIAN_REUSE_RESIDUAL_DECREASE * last_norm)) {
+        if (!(norm < MAX_RESIDUAL_RATIO_FOR_JACOBIAN_REUSE * last_norm)) { /* also if the residual is not a number */
             residual_jacobian(e, step->history);
             factors = &e->factors;
             corrections = 0;
@@ -351,7 +358,8 @@ static NewtonResult solve_newton(Equilibrium *e, LoadStep *step, double step_fra
         }
         /* Whether this correction is expected to end the load step: its trial then computes works, losses and
          * history, too, which saves an evaluation. Python has no such case. */
-        const bool is_last = step_fraction == 1.0 && n > 0 && norm < JACOBIAN_REUSE_RESIDUAL_DECREASE * last_norm &&
+        const bool is_last = step_fraction == 1.0 && n > 0 &&
+                             norm < MAX_RESIDUAL_RATIO_FOR_JACOBIAN_REUSE * last_norm &&
                              norm * norm < last_norm * tolerance; /* by its order of convergence */
         double *correction = e->corrections[corrections];
         for (int k = 0; k < MODES; k++)
@@ -364,12 +372,12 @@ static NewtonResult solve_newton(Equilibrium *e, LoadStep *step, double step_fra
         last_norm = is_full ? norm : 0.0; /* 0: the next iteration computes the Jacobian */
         jacobian_is_current = false;
     }
-    *left = residual_norm(r);
-    return *left <= tolerance_factor * tolerance ? CONVERGED : NOT_CONVERGED;
+    *remaining_norm = residual_norm(r);
+    return *remaining_norm <= tolerance_factor * tolerance ? CONVERGED : NOT_CONVERGED;
 }
 
 /* Say that there is no equilibrium, with the inputs that are not zero, or not the temperature of tightening. */
-static void explain_failure(const double *inputs, double step_fraction, double left, Text *reason)
+static void explain_failure(const double *inputs, double step_fraction, double remaining_norm, Text *reason)
 {
     text_clear(reason);
     for (int v = 0; v < 3 + N_DISPLACEMENTS; v++) {
@@ -383,17 +391,17 @@ static void explain_failure(const double *inputs, double step_fraction, double l
         text_append(reason, " = ");
         text_append_number(reason, inputs[at], 6);
     }
-    text_append(reason, ": no equilibrium of the joint was found beyond a fraction of ");
+    text_append(reason, ": no equilibrium of the joint was found: the solution stopped after a fraction ");
     text_append_number(reason, step_fraction, 3);
-    text_append(reason, " of the way, the residual is ");
-    text_append_number(reason, left, 2);
-    text_append(reason, " N");
+    text_append(reason, " of the load step, with a residual force of ");
+    text_append_number(reason, remaining_norm, 2);
+    text_append(reason, " N; check the size of the inputs, and [bodies]");
 }
 
 /* Modal coordinates in equilibrium at the end of a load step, which is divided where Newton's method fails. */
 static bool solve_load_step(Equilibrium *e, LoadStep *step, double *modal_coordinates, Text *reason)
 {
-    double step_fraction = 0.0, increment = 1.0, left = 0.0, reached[MODES], rate[MODES];
+    double step_fraction = 0.0, increment = 1.0, remaining_norm = 0.0, reached[MODES], rate[MODES];
     memcpy(reached, step->history + HISTORY_MODAL_COORDINATES, sizeof reached);
     modal_displacement(e->assembly.bodies, reached, e->assembly.bodies->start_displacement);
     if (!predict_by_tangent(e, step, rate, reason))
@@ -402,13 +410,13 @@ static bool solve_load_step(Equilibrium *e, LoadStep *step, double *modal_coordi
         const double target = fmin(step_fraction + increment, 1.0);
         for (int k = 0; k < MODES; k++)
             modal_coordinates[k] = reached[k] + (target - step_fraction) * rate[k];
-        const NewtonResult result = solve_newton(e, step, target, modal_coordinates, &left, reason);
+        const NewtonResult result = solve_newton(e, step, target, modal_coordinates, &remaining_norm, reason);
         if (result == REFUSED)
             return false;
         if (result == NOT_CONVERGED) {
             increment *= 0.5;
-            if (increment < MIN_LOAD_STEP) {
-                explain_failure(step->inputs, step_fraction, left, reason);
+            if (increment < MIN_STEP_FRACTION_INCREMENT) {
+                explain_failure(step->inputs, step_fraction, remaining_norm, reason);
                 return false;
             }
             continue;
@@ -459,15 +467,15 @@ void solve_modal_rates(Equilibrium *e, const double *q_rate, const double *histo
         const PointRate *rate = &contact->rate[i];
         const double pressure =
             rate->derivatives[1] * rate->approach - rate->preload_stiffness * rate->preload_approach;
-        add_scaled(contact->area * data.points[i][SHARE] * pressure, bodies->opening_jacobian[i], r);
+        add_scaled(contact->area * data.points[i][SHARE] * pressure, bodies->full_opening_jacobian[i], r);
     }
     for (int j = 0; j < n_patches(); j++)
         for (int d = 0; d < 3; d++)
             add_scaled(-contact->area * data.patches[j][SHARE] * e->assembly.friction->rate[j].traction[d],
-                       bodies->patch_jacobian[d][j], r);
+                       bodies->full_tangential_jacobian[d][j], r);
     for (int b = 0; b < (int)data.n_bolt_elongation; b++) {
         const double rate = rigid_elongation(b, q_rate);
-        add_scaled(-bolts->stiffness * (rate + bolt_gap_rate(bolts, b, rate)), bodies->elongation_jacobian[b], r);
+        add_scaled(-bolts->stiffness * (rate + bolt_gap_rate(bolts, b, rate)), bodies->full_elongation_jacobian[b], r);
     }
     residual_jacobian_on_side(e, history, after);
     dense_solve(bodies->use_avx, &e->factors, r);

@@ -1,4 +1,4 @@
-/* Repeats equilibrium.py of the package: static equilibrium of elastic bodies, contact, friction and bolts. */
+/* Repeats equilibrium.py of the package: static equilibrium of elastic members, contact, friction and bolts. */
 #ifndef JOINTFMU_EQUILIBRIUM_H
 #define JOINTFMU_EQUILIBRIUM_H
 
@@ -19,8 +19,8 @@ enum { PREDICTOR_KEY = 5 + 3 + MODES + 6 * MAX_PATCHES };
 enum { WEIGHTED_ROWS = (int)MAX_BOLT_ELONGATION > 64 ? (int)MAX_BOLT_ELONGATION : 64 };
 _Static_assert((int)MAX_PATCHES <= (int)WEIGHTED_ROWS, "one set of rows");
 
-/* Derivatives of the modal coordinates by q at the start of a load step, by the tangent stiffness there; and what they
- * depend on. */
+/* Derivatives of the modal coordinates by q at one end of a load step, from the tangent stiffness there; and a key of
+ * everything on which they depend. */
 typedef struct {
     bool is_known;
     double key[PREDICTOR_KEY], modal_rates[N_DISPLACEMENTS][MODES];
@@ -39,7 +39,7 @@ typedef struct {
     ModalPredictor start, end;         /* at both ends of the last load step */
     double condensed[N_DISPLACEMENTS]; /* diagonal of the condensed stiffness at the end of the step [N/m, N.m] */
     /* Work arrays, as Windows does not allow them on the stack. */
-    double modal_opening[MAX_PATCH_DISPLACEMENT_X][N_COLUMNS]; /* derivatives of the opening of the patches */
+    double patch_opening_jacobian[MAX_PATCH_DISPLACEMENT_X][N_COLUMNS]; /* derivatives of the opening of the patches */
     double weighted[WEIGHTED_ROWS][N_COLUMNS]; /* rows of the Jacobians times their weights */
     double normal_stiffness[N_COLUMNS][N_COLUMNS], shear_stiffness[N_COLUMNS][N_COLUMNS];
     TractionDerivatives derivatives[MAX_PATCHES];
@@ -51,7 +51,7 @@ typedef struct {
 /* Elongation [m] of bolt b at q and modal coordinates, or its rate. */
 static inline double bolt_elongation(const Bodies *bodies, int b, const double *q, const double *modal_coordinates)
 {
-    return rigid_elongation(b, q) + dense_dot(bodies->elongation_jacobian[b], modal_coordinates);
+    return rigid_elongation(b, q) + dense_dot(bodies->full_elongation_jacobian[b], modal_coordinates);
 }
 
 /* Equilibrium at the end of the load step from a history to the inputs, and the history there. Contact, bodies, bolts

@@ -29,19 +29,21 @@ static void slider_heights(Foundation *f, double reference)
     const double end = f->curve->end.y;
     double y[2], *h = f->height;
     curve_evaluate(f->curve, reference, 0, y);
-    const bool touches = y[0] > MIN_REFERENCE_OVER_END_LOAD * end,
-               given = touches && y[0] < MAX_REFERENCE_OVER_END_LOAD * end;
-    const double load = touches ? fmin(y[0], MAX_REFERENCE_OVER_END_LOAD * end) : DEFAULT_REFERENCE_OVER_END_LOAD * end,
-                 over = portable_log(end / load);
+    const bool touches = y[0] > MIN_REFERENCE_LOAD_OVER_END_LOAD * end,
+               use_reference = touches && y[0] < MAX_REFERENCE_LOAD_OVER_END_LOAD * end;
+    const double load = touches ? fmin(y[0], MAX_REFERENCE_LOAD_OVER_END_LOAD * end)
+                                : DEFAULT_REFERENCE_LOAD_OVER_END_LOAD * end;
+    const double log_load_ratio = portable_log(end / load);
     *h++ = f->curve->start.x;
-    for (int k = N_BELOW - 1; k >= 0; k--) {
-        const double part = (k + f->offset) / (double)N_BELOW, rest = (1.0 - part) * (1.0 - part);
-        *h++ = approach_at_load(f, load * rest / (part * part + rest));
+    for (int k = HEIGHTS_BELOW_REFERENCE - 1; k >= 0; k--) {
+        const double position = (k + f->offset) / (double)HEIGHTS_BELOW_REFERENCE;
+        const double squared_rest = (1.0 - position) * (1.0 - position);
+        *h++ = approach_at_load(f, load * squared_rest / (position * position + squared_rest));
     }
-    *h++ = given ? reference : approach_at_load(f, load);
-    for (int k = 0; k < N_ABOVE; k++) {
-        const double part = (k + f->offset) / (double)N_ABOVE;
-        *h++ = approach_at_load(f, load * portable_exp(over * (part * part)));
+    *h++ = use_reference ? reference : approach_at_load(f, load);
+    for (int k = 0; k < HEIGHTS_ABOVE_REFERENCE; k++) {
+        const double position = (k + f->offset) / (double)HEIGHTS_ABOVE_REFERENCE;
+        *h++ = approach_at_load(f, load * portable_exp(log_load_ratio * (position * position)));
     }
     *h = f->curve->end.x;
 }
@@ -57,7 +59,7 @@ static void set_range(Foundation *f, int i)
     const double width = f->height[i + 1] - f->height[i];
     f->normal_stiffness[i] = fmax(f->stiffness[i + 1] - f->stiffness[i], 0.0);
     f->normal_force[i] = fmax(f->load[i + 1] - f->load[i] - f->stiffness[i] * width, 0.0);
-    f->force_deviation[i] = fmin(f->normal_stiffness[i] * (UNIFORM_DEVIATION * width), f->normal_force[i]);
+    f->force_deviation[i] = fmin(f->normal_stiffness[i] * (UNIFORM_DISTRIBUTION_DEVIATION * width), f->normal_force[i]);
     for (int late = 0; late < 2; late++) {
         const int k = 2 * i + late;
         const double first = f->normal_force[i] + (late ? f->force_deviation[i] : -f->force_deviation[i]);
@@ -152,7 +154,8 @@ PatchState patch_state(const Foundation *f, double approach, int near)
     return p;
 }
 
-/* Arguments of `partial_contact`. Arguments before X_LOAD have no rates: `constant_count` in native.py counts them. */
+/* Arguments of `partial_contact`. Arguments before X_LOAD have no rates: `constant_argument_count` in native.py counts
+ * them. */
 enum { X_RATIO, X_MU, X_LOAD, X_STIFFNESS, X_BEND, X_WIDTH, N_PARTIAL_CONTACT };
 enum { N_CONSTANT_ARGUMENTS = X_LOAD };
 
@@ -191,7 +194,7 @@ static bool keeps_contact_state(int i, const PatchState *from, const PatchState 
 }
 
 /* Whether the mean stiffness of a range is computed from derivatives at both ends. */
-static inline bool is_small_change(const Foundation *f, int i, const PatchState *from, const PatchState *at)
+static inline bool is_small_approach_change(const Foundation *f, int i, const PatchState *from, const PatchState *at)
 {
     const double change = at->approach - from->approach;
     return change == 0.0 ||
@@ -222,13 +225,13 @@ static void add_sum(const SliderResultant *sum, SliderUpdate *update)
     update->loss += sum->loss;
 }
 
-/* Add one slider: force, tangent xx, xy, yy and heat; e_x, e_y: its torsion direction. */
-static inline void add_slider(const double *slid, double e_x, double e_y, SliderUpdate *update)
+/* Add one slider: force, tangent xx, xy, yy and loss; e_x, e_y: its torsion direction. */
+static inline void add_slider(const double *mapping, double e_x, double e_y, SliderUpdate *update)
 {
-    const double x = slid[0], y = slid[1], xx = slid[2], xy = slid[3], yy = slid[4];
-    const double x_t = xx * e_x + xy * e_y, y_t = xy * e_x + yy * e_y;
+    const double x = mapping[0], y = mapping[1], xx = mapping[2], xy = mapping[3], yy = mapping[4];
+    const double x_r = xx * e_x + xy * e_y, y_r = xy * e_x + yy * e_y;
     const SliderResultant one = {
-        {x, y, x * e_x + y * e_y}, {xx, xy, yy, x_t, y_t, x_t * e_x + y_t * e_y}, slid[MAPPING_LOSS]};
+        {x, y, x * e_x + y * e_y}, {xx, xy, yy, x_r, y_r, x_r * e_x + y_r * e_y}, mapping[MAPPING_LOSS]};
     add_sum(&one, update);
 }
 
@@ -247,7 +250,7 @@ enum {
     N_VARYING_LOSS = 12
 };
 
-/* Heat of a slider whose stiffness changes. */
+/* Dissipated energy of a slider whose stiffness changes. */
 static inline double varying_loss(const Run *run, int k, const SimdBatch *all)
 {
     const int at = run->at + k;
@@ -268,14 +271,14 @@ static inline double varying_loss(const Run *run, int k, const SimdBatch *all)
 static inline void finish_run(const Run *run, const SimdBatch *all)
 {
     for (int k = 0; k < 2; k++) {
-        double slid[N_MAPPING];
+        double mapping[N_MAPPING];
         for (int r = 0; r < N_MAPPING; r++)
-            slid[r] = all->results[r][run->at + k];
+            mapping[r] = all->results[r][run->at + k];
         if (run->stiffness_changes)
-            slid[MAPPING_LOSS] = varying_loss(run, k, all);
-        add_slider(slid, run->torsion_directions[0][k], run->torsion_directions[1][k], run->update);
+            mapping[MAPPING_LOSS] = varying_loss(run, k, all);
+        add_slider(mapping, run->torsion_directions[0][k], run->torsion_directions[1][k], run->update);
         for (int d = 0; d < 2; d++)
-            run->force_end[d][k] = slid[d];
+            run->force_end[d][k] = mapping[d];
     }
 }
 
@@ -297,17 +300,17 @@ static void finish_runs(SliderWork *work)
 {
     SimdBatch *all = &work->batch;
     const Sliders2D s = batch(all);
-    double *slid[N_MAPPING];
+    double *mapping[N_MAPPING];
     for (int r = 0; r < N_MAPPING; r++)
-        slid[r] = all->results[r];
+        mapping[r] = all->results[r];
     /* up to a multiple of four: old rows follow */
-    sliders_return_map(all->use_avx, 0, (all->n + 3) / 4 * 4, &s, slid, work->forces_only);
+    sliders_return_map(all->use_avx, 0, (all->n + 3) / 4 * 4, &s, mapping, work->forces_only);
     for (int i = 0; i < work->n; i++) {
         const Run *run = &work->runs[i];
         if (!work->forces_only)
             finish_run(run, all);
         else
-            add_resultant(2, slid[0] + run->at, slid[1] + run->at, run->torsion_directions[0],
+            add_resultant(2, mapping[0] + run->at, mapping[1] + run->at, run->torsion_directions[0],
                           run->torsion_directions[1], run->update->traction);
     }
     work->n = all->n = 0;
@@ -319,16 +322,16 @@ void foundations_finish(SliderWork *work)
     work->forces_only = false;
 }
 
-/* Start a run of up to `most` rows for the sliders from k on of a patch. */
-static Run *add_run(SliderWork *work, int most, int k, double *const force_end[2], const double *const turning[2],
-                    SliderUpdate *update)
+/* Start a run of up to `max_rows` rows for the sliders from k on of a patch. */
+static Run *add_run(SliderWork *work, int max_rows, int k, double *const force_end[2],
+                    const double *const torsion_directions[2], SliderUpdate *update)
 {
-    if (work->batch.n + most > BATCH_SIZE)
+    if (work->batch.n + max_rows > BATCH_SIZE)
         finish_runs(work);
     Run *run = &work->runs[work->n++];
     *run = (Run){.at = work->batch.n,
                  .force_end = {force_end[0] + k, force_end[1] + k},
-                 .torsion_directions = {turning[0] + k, turning[1] + k},
+                 .torsion_directions = {torsion_directions[0] + k, torsion_directions[1] + k},
                  .update = update};
     return run;
 }
@@ -367,12 +370,12 @@ static void advance_constant_stiffness(int n, const Sliders2D *s, const double *
     if (is_along_x)
         return;
     if (end > first) {
-        double rows[N_MAPPING - 2][FOUNDATION_SLIDERS], *slid[N_MAPPING] = {force_end[0], force_end[1]};
+        double rows[N_MAPPING - 2][FOUNDATION_SLIDER_COUNT], *mapping[N_MAPPING] = {force_end[0], force_end[1]};
         for (int r = 2; r < N_MAPPING; r++)
-            slid[r] = rows[r - 2];
-        sliders_return_map(use_avx, first, end, s, slid, work->forces_only);
+            mapping[r] = rows[r - 2];
+        sliders_return_map(use_avx, first, end, s, mapping, work->forces_only);
         if (!work->forces_only) {
-            sliders_resultant(use_avx, first, end, s, slid, &sum);
+            sliders_resultant(use_avx, first, end, s, mapping, &sum);
             add_sum(&sum, update);
         } else {
             add_resultant(end - first, force_end[0] + first, force_end[1] + first, s->torsion_directions[0] + first,
@@ -389,7 +392,7 @@ static void advance_constant_stiffness(int n, const Sliders2D *s, const double *
 static const double FULL_RETENTION[] = {
     1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0,
     1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
-_Static_assert(sizeof FULL_RETENTION == FOUNDATION_SLIDERS * sizeof *FULL_RETENTION, "of each");
+_Static_assert(sizeof FULL_RETENTION == FOUNDATION_SLIDER_COUNT * sizeof *FULL_RETENTION, "of each");
 
 /* Sliders from k on, without stiffness and limits. */
 static inline Sliders2D sliders_from(const Foundation *f, const PatchIncrement *path, int k)
@@ -425,7 +428,8 @@ static void advance_constant_approach(const Foundation *f, int i, const PatchInc
                                       double *const force_end[2], SliderWork *work, SliderUpdate *update)
 {
     const SliderProperties here = slider_properties(f, i, path->end);
-    const double soft = here.K > 0.0 ? 1.0 / here.K : 0.0, K[2] = {here.K, here.K}, per_K[2] = {soft, soft};
+    const double compliance = here.K > 0.0 ? 1.0 / here.K : 0.0;
+    const double K[2] = {here.K, here.K}, per_K[2] = {compliance, compliance};
     double *const to[2] = {force_end[0] + 2 * i, force_end[1] + 2 * i}, stick = 2.0 * here.K;
     Sliders2D s = sliders_from(f, path, 2 * i);
     s.K = s.secant_stiffness = K;
@@ -469,19 +473,20 @@ static inline void retention_arguments(const Foundation *f, int i, const PatchIn
 {
     const double change = at->approach - path->start->approach;
     set_range_ends(f, start, end, change, x);
-    x[X_IS_SMALL] = is_small_change(f, i, path->start, at);
+    x[X_IS_SMALL] = is_small_approach_change(f, i, path->start, at);
 }
 
-/* Add the pair of a range that changes; `gained` is the result of `retention_and_stiffness`. */
+/* Add the pair of a range that changes; `factors`: results of `retention_and_stiffness`. */
 static inline void add_range_pair(Sliders2D s, const SliderProperties *start, const SliderProperties *end,
-                                  const double gained[2], SimdBatch *all)
+                                  const double factors[2], SimdBatch *all)
 {
-    const double soft = end->K > 0.0 ? 1.0 / end->K : 0.0, K[2] = {end->K, end->K}, per_K[2] = {soft, soft};
-    const double keeps[2] = {gained[0], gained[0]}, carries[2] = {gained[1], gained[1]};
+    const double compliance = end->K > 0.0 ? 1.0 / end->K : 0.0;
+    const double K[2] = {end->K, end->K}, per_K[2] = {compliance, compliance};
+    const double retention[2] = {factors[0], factors[0]}, secant_stiffness[2] = {factors[1], factors[1]};
     s.K = K;
     s.compliance = per_K;
-    s.retention = keeps;
-    s.secant_stiffness = carries;
+    s.retention = retention;
+    s.secant_stiffness = secant_stiffness;
     s.limit_start = start->limit;
     s.limit_end = end->limit;
     add_pair(all, &s, 0);
@@ -497,7 +502,7 @@ static void advance_partial_range(const Foundation *f, int i, const PatchIncreme
     const SliderProperties start = slider_properties(f, i, path->start), end = slider_properties(f, i, path->end);
     const SliderProperties ends[2] = {end, contact_changes ? slider_properties(f, i, half) : end};
     const int n = contact_changes ? 2 : 1;
-    double x[N_RETENTION], gained[2];
+    double x[N_RETENTION], factors[2];
     Sliders2D s = sliders_from(f, path, 2 * i);
     Run *run = add_run(work, 2 * n, 2 * i, force_end, f->torsion_directions, update);
     run->contact_changes = contact_changes;
@@ -505,8 +510,8 @@ static void advance_partial_range(const Foundation *f, int i, const PatchIncreme
     run->stiffness_changes = start.K != end.K;
     for (int at = 0; at < n; at++) {
         retention_arguments(f, i, path, &start, &ends[at], points[at], x);
-        retention_and_stiffness(x, NULL, gained);
-        add_range_pair(s, &start, &ends[at], gained, &work->batch);
+        retention_and_stiffness(x, NULL, factors);
+        add_range_pair(s, &start, &ends[at], factors, &work->batch);
         for (int d = 0; d < 3; d++)
             s.displacement[d] *= 0.5;
     }
@@ -558,23 +563,23 @@ static void add_opening_range(const Foundation *f, int i, const PatchIncrement *
     const SliderProperties start = slider_properties(f, i, path->start);
     const int first = work->batch.n;
     SliderProperties end[2];
-    double gained[2][2];
+    double factors[2][2];
     for (int k = 0; k < 2; k++) {
         double x[N_RETENTION];
         end[k] = slider_properties(f, i, at[k]);
         retention_arguments(f, i, path, &start, &end[k], at[k], x);
-        retention_and_stiffness(x, NULL, gained[k]);
+        retention_and_stiffness(x, NULL, factors[k]);
     }
-    const double per_gain = gained[0][1] > 0.0 ? 1.0 / (step * gained[0][1]) : 0.0;
+    const double per_secant_stiffness = factors[0][1] > 0.0 ? 1.0 / (step * factors[0][1]) : 0.0;
     add_opening_pair(f, 2 * i, end->K, work);
-    add_range_pair(sliders_from(f, path, 2 * i), &start, end, gained[0], &work->batch);
+    add_range_pair(sliders_from(f, path, 2 * i), &start, end, factors[0], &work->batch);
     for (int k = 0; k < 2; k++) {
         const int row = first + k;
         work->opening.limit_rate[row] = (end[1].limit[k] - end[0].limit[k]) / step;
         for (int d = 0; d < 2; d++)
             work->opening.displacement_rate[d][row] =
-                per_gain * ((gained[1][0] - gained[0][0]) * work->batch.force[d][row] +
-                            (gained[1][1] - gained[0][1]) * work->batch.displacement[d][row]);
+                per_secant_stiffness * ((factors[1][0] - factors[0][0]) * work->batch.force[d][row] +
+                                        (factors[1][1] - factors[0][1]) * work->batch.displacement[d][row]);
     }
 }
 
@@ -629,47 +634,49 @@ bool full_stick_update(const Foundation *f, const PatchIncrement *path, const do
     const PatchState *from = path->start, *to = path->end;
     const double x[N_STICK_RETENTION] = {to->approach < from->approach, stick_stiffness(f, from),
                                          stick_stiffness(f, to)};
-    const double most = FULL_STICK_OVER_GROSS_SLIP_DISPLACEMENT * f->mu / f->ratio * x[R_STIFFNESS_END] *
+    const double max_traction = FULL_STICK_OVER_GROSS_SLIP_DISPLACEMENT * f->mu / f->ratio * x[R_STIFFNESS_END] *
                         (to->approach - f->height[0]);
-    double rule[2], *t = update->traction;
-    stick_retention(x, NULL, rule);
+    double retention_rule[2], *t = update->traction;
+    stick_retention(x, NULL, retention_rule);
     *update = (SliderUpdate){.tangent = {x[R_STIFFNESS_END], 0.0, x[R_STIFFNESS_END], 0.0, 0.0, x[R_STIFFNESS_END]}};
     for (int d = 0; d < 3; d++)
-        t[d] = rule[0] * before[d] + rule[1] * path->displacement[d];
-    return sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]) <= most;
+        t[d] = retention_rule[0] * before[d] + retention_rule[1] * path->displacement[d];
+    return sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]) <= max_traction;
 }
 
 bool full_stick_rates(const Foundation *f, const PatchIncrement *path, const double before[3],
                            const IncrementRate *direction, const IncrementRate *rates, SliderUpdate *rate)
 {
     const PatchState *from = path->start, *to = path->end;
-    const double rises = direction->ends[1] - direction->ends[0];
-    const bool corner = to->approach == from->approach && rises != 0.0;
-    const bool falls = to->approach < from->approach || (corner && rises < 0.0);
+    const double rise_rate = direction->ends[1] - direction->ends[0];
+    const bool is_corner = to->approach == from->approach && rise_rate != 0.0;
+    const bool is_unloading = to->approach < from->approach || (is_corner && rise_rate < 0.0);
     const double first = f->ratio * from->y[2] * rates->ends[0], last = f->ratio * to->y[2] * rates->ends[1];
-    const double x[2 * N_STICK_RETENTION - 1] = {falls, stick_stiffness(f, from), stick_stiffness(f, to), first, last};
-    double rule[2], slopes[2];
-    stick_retention(x, NULL, rule);
-    stick_retention_seed(x, NULL, slopes);
+    const double x[2 * N_STICK_RETENTION - 1] = {is_unloading, stick_stiffness(f, from), stick_stiffness(f, to), first,
+                                                 last};
+    double retention_rule[2], rule_rates[2];
+    stick_retention(x, NULL, retention_rule);
+    stick_retention_seed(x, NULL, rule_rates);
     *rate = (SliderUpdate){.tangent = {last, 0.0, last, 0.0, 0.0, last}};
     for (int d = 0; d < 3; d++)
         rate->traction[d] =
-            slopes[0] * before[d] + slopes[1] * path->displacement[d] + rule[1] * rates->displacement[d];
-    return corner;
+            rule_rates[0] * before[d] + rule_rates[1] * path->displacement[d] +
+            retention_rule[1] * rates->displacement[d];
+    return is_corner;
 }
 
 void distribute_stick_force(const Foundation *f, const PatchState *at, const double traction[3], double *const force[2])
 {
     const double stick = stick_stiffness(f, at);
     for (int i = 0; i < at->touched_ranges; i++) {
-        const double part = stick > 0.0 ? slider_properties(f, i, at).K / stick : 0.0;
+        const double share = stick > 0.0 ? slider_properties(f, i, at).K / stick : 0.0;
         for (int d = 0; d < 2; d++)
             for (int k = 2 * i; k < 2 * i + 2; k++)
-                force[d][k] = part * slider_displacement(f->torsion_directions, k, traction, d);
+                force[d][k] = share * slider_displacement(f->torsion_directions, k, traction, d);
     }
     for (int d = 0; d < 2; d++)
         memset(force[d] + 2 * at->touched_ranges, 0,
-               (size_t)(FOUNDATION_SLIDERS - 2 * at->touched_ranges) * sizeof *force[d]);
+               (size_t)(FOUNDATION_SLIDER_COUNT - 2 * at->touched_ranges) * sizeof *force[d]);
 }
 
 OPTIMIZE_FOR_SIZE
@@ -688,13 +695,13 @@ typedef struct {
 } SideRates;
 
 /* State at a height that moves on: the ranges in contact are those just above or just below the height. */
-static PatchState state_beside(const Foundation *f, const PatchState *at, double rises, bool *corner)
+static PatchState state_beside(const Foundation *f, const PatchState *at, double rise_rate, bool *corner)
 {
     PatchState p = *at;
-    if (p.full_ranges == 0 || p.full_ranges == N_RANGES || p.approach != f->height[p.full_ranges] || rises == 0.0)
+    if (p.full_ranges == 0 || p.full_ranges == N_RANGES || p.approach != f->height[p.full_ranges] || rise_rate == 0.0)
         return p;
     *corner = true;
-    if (rises > 0.0)
+    if (rise_rate > 0.0)
         p.touched_ranges = p.full_ranges + 1;
     else
         p.full_ranges--;
@@ -775,42 +782,43 @@ static bool has_two_sides(const double x[N_PLANE])
 static MappingRate return_map_rate(double x[2 * N_PLANE - P_RETENTION], const double direction[N_PLANE - P_RETENTION],
                                    bool *corner)
 {
-    MappingRate slid;
+    MappingRate mapping;
     const double u = elastic_predictor(x, 0), v = elastic_predictor(x, 1), limit = x[P_LIMIT_END];
-    const double own[2] = {predictor_rate(x, x + N_PLANE, 0), predictor_rate(x, x + N_PLANE, 1)};
+    const double predictor_rates[2] = {predictor_rate(x, x + N_PLANE, 0), predictor_rate(x, x + N_PLANE, 1)};
     const bool at_limit = is_at_limit(x);
-    const double beyond = u * predictor_rate(x, direction, 0) + v * predictor_rate(x, direction, 1) -
+    const double yield_rate = u * predictor_rate(x, direction, 0) + v * predictor_rate(x, direction, 1) -
                           limit * direction[P_LIMIT_END - P_RETENTION];
-    const double least = at_limit ? 1.0 - 2.0 * LIMIT_ROUND_OFF : 1.0;
-    const double grows = direction[P_LIMIT_END - P_RETENTION] - direction[P_LIMIT_START - P_RETENTION];
-    if (x[P_LIMIT_START] == limit && grows != 0.0) {
-        x[P_LIMIT_START] *= 1.0 - copysign(LIMIT_PERTURBATION, grows);
+    const double limit_factor = at_limit ? 1.0 - 2.0 * LIMIT_ROUND_OFF : 1.0;
+    const double limit_growth_rate = direction[P_LIMIT_END - P_RETENTION] - direction[P_LIMIT_START - P_RETENTION];
+    if (x[P_LIMIT_START] == limit && limit_growth_rate != 0.0) {
+        x[P_LIMIT_START] *= 1.0 - copysign(LIMIT_PERTURBATION, limit_growth_rate);
         *corner = *corner || u * u + v * v > limit * limit;
     }
     for (int k = P_LIMIT_START; k <= P_LIMIT_END; k++) {
-        x[k] *= least;
-        x[k + N_PLANE - P_RETENTION] *= least;
+        x[k] *= limit_factor;
+        x[k + N_PLANE - P_RETENTION] *= limit_factor;
     }
-    return_map_2d(x, NULL, slid.at);
-    return_map_2d_seed(x, NULL, slid.rate);
-    *corner = *corner || (at_limit && beyond != 0.0);
-    if (at_limit && !(beyond > 0.0)) { /* it sticks; its tangent stays that of a slider that slips */
-        slid.rate[0] = own[0];
-        slid.rate[1] = own[1];
-        slid.rate[MAPPING_LOSS] = slid.rate[MAPPING_SLIP] = 0.0;
+    return_map_2d(x, NULL, mapping.at);
+    return_map_2d_seed(x, NULL, mapping.rate);
+    *corner = *corner || (at_limit && yield_rate != 0.0);
+    if (at_limit && !(yield_rate > 0.0)) { /* it sticks; its tangent stays that of a slider that slips */
+        mapping.rate[0] = predictor_rates[0];
+        mapping.rate[1] = predictor_rates[1];
+        mapping.rate[MAPPING_LOSS] = mapping.rate[MAPPING_SLIP] = 0.0;
     }
-    return slid;
+    return mapping;
 }
 
-/* Rates of the arguments of slider k of a range: rates of its stiffness, of its limits before and after, and of the
- * displacement over a part of the path. */
-static void argument_rates(const Foundation *f, int k, const double gains[2], const IncrementRate *rates, double part,
-                         const double limits[2], double K_rate, double per_K, double out[N_PLANE - P_RETENTION])
+/* Rates of the arguments of `return_map_2d` for slider k: rates of retention and secant stiffness, of the displacement
+ * over a fraction [1] of the increment, of the limits at its start and end, and of the stiffness K. */
+static void argument_rates(const Foundation *f, int k, const double factor_rates[2], const IncrementRate *rates,
+                           double fraction, const double limits[2], double K_rate, double per_K,
+                           double out[N_PLANE - P_RETENTION])
 {
-    const double all[] = {gains[0],
-                          gains[1],
-                          part * slider_displacement(f->torsion_directions, k, rates->displacement, 0),
-                          part * slider_displacement(f->torsion_directions, k, rates->displacement, 1),
+    const double all[] = {factor_rates[0],
+                          factor_rates[1],
+                          fraction * slider_displacement(f->torsion_directions, k, rates->displacement, 0),
+                          fraction * slider_displacement(f->torsion_directions, k, rates->displacement, 1),
                           limits[0],
                           limits[1],
                           K_rate,
@@ -818,67 +826,77 @@ static void argument_rates(const Foundation *f, int k, const double gains[2], co
     memcpy(out, all, sizeof all);
 }
 
-/* Retention and secant stiffness of a range over a part of an increment, with rates. */
+/* Properties of a range at both ends of a fraction of an increment; factors of the elastic predictor (retention, secant
+ * stiffness) for this fraction; and their rates. */
 typedef struct {
     PropertiesRate start, end;
-    double gained[2], gains[2];
+    double factors[2], factor_rates[2];
 } SecantRate;
 
 static SecantRate secant_rate(const Foundation *f, int i, const SideRates *c, const PatchState *from,
-                              const PatchState *at, double part, const IncrementRate *rates)
+                              const PatchState *at, double fraction, const IncrementRate *rates)
 {
-    const double change = at->approach - from->approach, turned = part * (rates->ends[1] - rates->ends[0]);
-    const double rises = c->direction->ends[1] - c->direction->ends[0];
+    const double change = at->approach - from->approach;
+    const double approach_change_rate = fraction * (rates->ends[1] - rates->ends[0]);
+    const double rise_rate = c->direction->ends[1] - c->direction->ends[0];
     const double bend = change != 0.0 ? (c->path->end->y[2] - c->path->start->y[2]) /
                                             (c->path->end->approach - c->path->start->approach)
                                       : 0.0;
     double x[2 * N_RETENTION - 1];
-    SecantRate g = {.end = properties_rate(f, i, at, rates->ends[0] + turned, bend)};
+    SecantRate g = {.end = properties_rate(f, i, at, rates->ends[0] + approach_change_rate, bend)};
     g.start = change != 0.0 || c->path->is_first ? properties_rate(f, i, from, rates->ends[0], bend)
                                                  : (PropertiesRate){.at = g.end.at};
     retention_arguments(f, i, c->path, &g.start.at, &g.end.at, at, x);
-    if (change == 0.0 && rises != 0.0) { /* springs that lift off take their force with them */
-        x[X_APPROACH_CHANGE] = copysign(DBL_MIN, rises);
+    if (change == 0.0 && rise_rate != 0.0) { /* springs that lift off take their force with them */
+        x[X_APPROACH_CHANGE] = copysign(DBL_MIN, rise_rate);
         *c->corner = true;
     }
-    set_range_ends(f, &g.start.rate, &g.end.rate, turned, x + N_RETENTION - 1);
-    retention_and_stiffness(x, NULL, g.gained);
-    retention_and_stiffness_seed(x, NULL, g.gains);
+    set_range_ends(f, &g.start.rate, &g.end.rate, approach_change_rate, x + N_RETENTION - 1);
+    retention_and_stiffness(x, NULL, g.factors);
+    retention_and_stiffness_seed(x, NULL, g.factor_rates);
     return g;
 }
 
-/* Return mapping of one slider of a range over a part of an increment, with its rate. */
+/* Return mapping of one slider of a range over a fraction [1] of an increment, with its rate. */
 static MappingRate range_slider_rate(const Foundation *f, const SideRates *c, int i, const PatchState *from,
-                                     const PatchState *at, double part, int late, const SecantRate *own)
+                                     const PatchState *at, double fraction, int late, const SecantRate *own)
 {
     const int k = 2 * i + late;
     const double K = own->end.at.K, per_K = K > 0.0 ? 1.0 / K : 0.0;
-    double x[2 * N_PLANE - P_RETENTION] = {c->path->force[0][k], c->path->force[1][k], own->gained[0], own->gained[1],
-                                       part * slider_displacement(f->torsion_directions, k, c->path->displacement, 0),
-                                       part * slider_displacement(f->torsion_directions, k, c->path->displacement, 1),
-                                       own->start.at.limit[late], own->end.at.limit[late], K, per_K};
+    const double *shift = c->path->displacement;
+    double x[2 * N_PLANE - P_RETENTION] = {c->path->force[0][k],
+                                           c->path->force[1][k],
+                                           own->factors[0],
+                                           own->factors[1],
+                                           fraction * slider_displacement(f->torsion_directions, k, shift, 0),
+                                           fraction * slider_displacement(f->torsion_directions, k, shift, 1),
+                                           own->start.at.limit[late],
+                                           own->end.at.limit[late],
+                                           K,
+                                           per_K};
     double ahead_rates[N_PLANE - P_RETENTION] = {0.0};
     const double limits[2] = {own->start.rate.limit[late], own->end.rate.limit[late]};
-    argument_rates(f, k, own->gains, c->rates, part, limits, own->end.rate.K, per_K, x + N_PLANE);
+    argument_rates(f, k, own->factor_rates, c->rates, fraction, limits, own->end.rate.K, per_K, x + N_PLANE);
     if (has_two_sides(x)) {
-        const SecantRate direction = secant_rate(f, i, c, from, at, part, c->direction);
+        const SecantRate direction = secant_rate(f, i, c, from, at, fraction, c->direction);
         const double ahead[2] = {direction.start.rate.limit[late], direction.end.rate.limit[late]};
-        argument_rates(f, k, direction.gains, c->direction, part, ahead, direction.end.rate.K, per_K, ahead_rates);
+        argument_rates(f, k, direction.factor_rates, c->direction, fraction, ahead, direction.end.rate.K, per_K,
+                       ahead_rates);
     }
     return return_map_rate(x, ahead_rates, c->corner);
 }
 
-/* Heat over the elastic energy at the start [1] below which it is round-off. */
+/* Dissipated energy over the elastic energy at the start [1] below which it is round-off. */
 static const double LOSS_ROUND_OFF = 1e-13;
 
-/* Rate of the heat of a slider whose stiffness changes; without heat the rate cannot be negative. */
+/* Rate of the energy dissipated by a slider whose stiffness changes; without loss the rate cannot be negative. */
 static double loss_rate(const SideRates *c, double x[2 * N_VARYING_LOSS - 3])
 {
     double loss, more, rate, is_along_x = c->rates->ends[1] * c->direction->ends[1];
     for (int d = 0; d < 3; d++)
         is_along_x += c->rates->displacement[d] * c->direction->displacement[d];
     varying_stiffness_loss(x, NULL, &loss);
-    x[C_STIFFNESS_START] *= 1.0 - LOSS_ROUND_OFF; /* a little more energy before: the heat is round-off if it is less */
+    x[C_STIFFNESS_START] *= 1.0 - LOSS_ROUND_OFF; /* a little more energy before: a smaller loss is round-off */
     varying_stiffness_loss(x, NULL, &more);
     varying_stiffness_loss_seed(x, NULL, &rate);
     if (loss > 0.5 * more)
@@ -895,20 +913,20 @@ static void partial_range_rate(const Foundation *f, int i, const SideRates *c, c
     const PatchState *points[2] = {to, middle};
     const bool contact_changes = !keeps_contact_state(i, path->start, to);
     SecantRate own[2];
-    MappingRate slid[2][2] = {{{{0.0}, {0.0}}}};
+    MappingRate mapping[2][2] = {{{{0.0}, {0.0}}}};
     for (int at = 0; at < (contact_changes ? 2 : 1); at++) {
-        const double part = at > 0 ? 0.5 : 1.0;
-        own[at] = secant_rate(f, i, c, from, points[at], part, c->rates);
+        const double fraction = at > 0 ? 0.5 : 1.0;
+        own[at] = secant_rate(f, i, c, from, points[at], fraction, c->rates);
         for (int late = 0; late < 2; late++)
-            slid[at][late] = range_slider_rate(f, c, i, from, points[at], part, late, &own[at]);
+            mapping[at][late] = range_slider_rate(f, c, i, from, points[at], fraction, late, &own[at]);
     }
     if (to->approach == f->height[i]) { /* springs without load: no force is left, and it grows by second order */
-        memset(slid[0], 0, sizeof slid[0]);
+        memset(mapping[0], 0, sizeof mapping[0]);
         own->end.rate.K = 0.0;
     }
     const PropertiesRate *start = &own->start, *last = &own->end;
     for (int late = 0; late < 2; late++) {
-        const MappingRate *end = &slid[0][late], *half = &slid[1][late];
+        const MappingRate *end = &mapping[0][late], *half = &mapping[1][late];
         const double *force_end = end->at;
         const int k = 2 * i + late;
         double shift[2], rated[2], dy[N_MAPPING];
@@ -946,7 +964,7 @@ static void partial_range_rate(const Foundation *f, int i, const SideRates *c, c
 
 /* Rates of stiffness and limit of the sliders. */
 typedef struct {
-    double K[FOUNDATION_SLIDERS], limit[FOUNDATION_SLIDERS];
+    double K[FOUNDATION_SLIDER_COUNT], limit[FOUNDATION_SLIDER_COUNT];
 } SliderRate;
 
 /* Rates of the heights with the onset approach, see `slider_heights` and `heights_after_liftoff`. */
@@ -955,16 +973,18 @@ static void slider_height_rates(const Foundation *f, double rate, double height[
     const double end = f->curve->end.y;
     double y[2];
     curve_evaluate(f->curve, f->onset_approach, 1, y);
-    const bool follow = y[0] > MIN_REFERENCE_OVER_END_LOAD * end && y[0] < MAX_REFERENCE_OVER_END_LOAD * end;
+    const bool follow = y[0] > MIN_REFERENCE_LOAD_OVER_END_LOAD * end && y[0] < MAX_REFERENCE_LOAD_OVER_END_LOAD * end;
     memset(height, 0, N_HEIGHTS * sizeof *height);
     /* below, heights at fixed ratios of the load; above, at equal steps of its logarithm */
     for (int i = 1; i < N_HEIGHTS - 1 && follow; i++) {
-        const double part = i > N_BELOW ? fmax(i - 2 - N_BELOW + f->offset, 0.0) / (double)N_ABOVE : 0.0;
-        const double load = f->load[i] / y[0] * (1.0 - part * part) * y[1] * rate;
+        const double position = i > HEIGHTS_BELOW_REFERENCE ? fmax(i - 2 - HEIGHTS_BELOW_REFERENCE + f->offset, 0.0) /
+                                                              (double)HEIGHTS_ABOVE_REFERENCE
+                                                        : 0.0;
+        const double load = f->load[i] / y[0] * (1.0 - position * position) * y[1] * rate;
         height[i] = f->stiffness[i] > 0.0 ? load / f->stiffness[i] : 0.0;
     }
     if (follow)
-        height[N_BELOW + 1] = rate;
+        height[HEIGHTS_BELOW_REFERENCE + 1] = rate;
     if (f->liftoff_height > 0)
         height[f->liftoff_height] = rate;
 }
@@ -985,7 +1005,8 @@ static void full_range_rates(const Foundation *f, int n, double approach, double
         const double normal = (f->stiffness[i + 1] - f->stiffness[i]) * height[i + 1] - stiffness[i] * width;
         const double opened =
             f->force_deviation[i] < f->normal_force[i]
-                ? UNIFORM_DEVIATION * (springs * width + f->normal_stiffness[i] * (height[i + 1] - height[i]))
+                ? UNIFORM_DISTRIBUTION_DEVIATION *
+                      (springs * width + f->normal_stiffness[i] * (height[i + 1] - height[i]))
                 : normal;
         for (int late = 0; late < 2; late++) {
             out->K[2 * i + late] = 0.5 * f->ratio * springs;
@@ -1000,11 +1021,11 @@ static void add_full_range_rates(const Foundation *f, int n, const SideRates *c,
 {
     const PatchIncrement *path = c->path;
     const double grown = f->mu / f->ratio, from = grown * path->start->approach, to = grown * path->end->approach;
-    const double *turn = c->rates->ends, *turned = c->direction->ends;
+    const double *rate_ends = c->rates->ends, *direction_ends = c->direction->ends;
     SliderRate own, ahead;
     bool found = false;
     if (path->is_first)
-        full_range_rates(f, n / 2, path->end->approach, turn[1], &own);
+        full_range_rates(f, n / 2, path->end->approach, rate_ends[1], &own);
     for (int k = 0; k < n; k++) {
         const double K = f->K[k], per_K = f->per_K[k], before = limit_at_growth(f->limit_at_zero_approach[k], K, from),
                      after = limit_at_growth(f->limit_at_zero_approach[k], K, to);
@@ -1019,28 +1040,28 @@ static void add_full_range_rates(const Foundation *f, int n, const SideRates *c,
                                                K,
                                                per_K};
         double ahead_rates[N_PLANE - P_RETENTION] = {0.0};
-        const double limits[2] = {path->is_first ? own.limit[k] : grown * K * turn[0],
-                                  path->is_first ? own.limit[k] : grown * K * turn[1]};
-        const double stiffer = path->is_first ? own.K[k] : 0.0, gains[2] = {0.0, stiffer};
-        argument_rates(f, k, gains, c->rates, 1.0, limits, stiffer, per_K, x + N_PLANE);
+        const double limits[2] = {path->is_first ? own.limit[k] : grown * K * rate_ends[0],
+                                  path->is_first ? own.limit[k] : grown * K * rate_ends[1]};
+        const double stiffer = path->is_first ? own.K[k] : 0.0, factor_rates[2] = {0.0, stiffer};
+        argument_rates(f, k, factor_rates, c->rates, 1.0, limits, stiffer, per_K, x + N_PLANE);
         const double u = elastic_predictor(x, 0), v = elastic_predictor(x, 1),
-                     least = (1.0 - 2.0 * LIMIT_ROUND_OFF) * after;
+                     slip_threshold = (1.0 - 2.0 * LIMIT_ROUND_OFF) * after;
         double dy[N_MAPPING] = {K * x[N_PLANE + 2] + stiffer * x[P_DISPLACEMENT],
                                 K * x[N_PLANE + 3] + stiffer * x[P_DISPLACEMENT + 1], stiffer, 0.0, stiffer};
-        if (u * u + v * v >= least * least) {
+        if (u * u + v * v >= slip_threshold * slip_threshold) {
             const bool sides =
                 path->is_first ? is_at_limit(x) : has_two_sides(x); /* both limits of a first increment are equal */
             if (sides && path->is_first && !found)
-                full_range_rates(f, n / 2, path->end->approach, turned[1], &ahead);
+                full_range_rates(f, n / 2, path->end->approach, direction_ends[1], &ahead);
             found = found || sides;
             if (sides) {
-                const double next[2] = {path->is_first ? ahead.limit[k] : grown * K * turned[0],
-                                        path->is_first ? ahead.limit[k] : grown * K * turned[1]};
-                const double stiff = path->is_first ? ahead.K[k] : 0.0, gain_ahead[2] = {0.0, stiff};
-                argument_rates(f, k, gain_ahead, c->direction, 1.0, next, stiff, per_K, ahead_rates);
+                const double next[2] = {path->is_first ? ahead.limit[k] : grown * K * direction_ends[0],
+                                        path->is_first ? ahead.limit[k] : grown * K * direction_ends[1]};
+                const double stiff = path->is_first ? ahead.K[k] : 0.0, factor_rates_ahead[2] = {0.0, stiff};
+                argument_rates(f, k, factor_rates_ahead, c->direction, 1.0, next, stiff, per_K, ahead_rates);
             }
-            const MappingRate slid = return_map_rate(x, ahead_rates, c->corner);
-            memcpy(dy, slid.rate, sizeof dy);
+            const MappingRate mapping = return_map_rate(x, ahead_rates, c->corner);
+            memcpy(dy, mapping.rate, sizeof dy);
         }
         add_slider(dy, f->torsion_directions[0][k], f->torsion_directions[1][k], rate);
     }
@@ -1055,25 +1076,29 @@ static void add_contact_onset_rate(const Foundation *f, int i, const SideRates *
                                    const PatchState *to, SliderUpdate *rate)
 {
     const PatchIncrement *path = c->path;
-    const bool still = path->displacement[0] == 0.0 && path->displacement[1] == 0.0 && path->displacement[2] == 0.0;
+    const bool is_undisplaced =
+        path->displacement[0] == 0.0 && path->displacement[1] == 0.0 && path->displacement[2] == 0.0;
     const double K = properties_rate(f, i, to, c->rates->ends[1], 0.0).rate.K;
     const double change = to->approach - from->approach;
     const SliderProperties below = slider_properties(f, i - 1, to), start = slider_properties(f, i, from);
-    const bool lifts = change < 0.0 && start.K > 0.0, follows = still && !lifts;
+    const bool lifts_off = change < 0.0 && start.K > 0.0, follows_neighbour = is_undisplaced && !lifts_off;
     for (int late = 0; late < 2; late++) {
-        const int at = 2 * i + late, k = follows ? at - 2 : at;
-        const double sticks = f->mu / f->ratio * fmax(change, 0.0) *
-                              (late ? 1.0 + 2.0 * UNIFORM_DEVIATION : 1.0 - 2.0 * UNIFORM_DEVIATION);
-        const double least = follows ? (1.0 - 2.0 * LIMIT_ROUND_OFF) * below.limit[late] : sticks;
-        double way[2];
+        const int at = 2 * i + late, k = follows_neighbour ? at - 2 : at;
+        const double stick_displacement = f->mu / f->ratio * fmax(change, 0.0) *
+                              (late ? 1.0 + 2.0 * UNIFORM_DISTRIBUTION_DEVIATION
+                                    : 1.0 - 2.0 * UNIFORM_DISTRIBUTION_DEVIATION);
+        const double slip_threshold =
+            follows_neighbour ? (1.0 - 2.0 * LIMIT_ROUND_OFF) * below.limit[late] : stick_displacement;
+        double slip_direction[2];
         for (int d = 0; d < 2; d++) {
             const double shift = slider_displacement(f->torsion_directions, k, path->displacement, d),
                          force = path->force[d][k];
-            way[d] = lifts ? force / start.K + shift : follows ? force : shift;
+            slip_direction[d] = lifts_off ? force / start.K + shift : follows_neighbour ? force : shift;
         }
-        const double square = way[0] * way[0] + way[1] * way[1], per = square > least * least ? K / square : 0.0;
-        const double dy[N_MAPPING] = {0.0, 0.0, K - per * way[0] * way[0], -per * way[0] * way[1],
-                                      K - per * way[1] * way[1]};
+        const double u = slip_direction[0], v = slip_direction[1], square = u * u + v * v;
+        const double K_per_square = square > slip_threshold * slip_threshold ? K / square : 0.0;
+        const double dy[N_MAPPING] = {0.0, 0.0, K - K_per_square * u * u, -K_per_square * u * v,
+                                      K - K_per_square * v * v};
         add_slider(dy, f->torsion_directions[0][at], f->torsion_directions[1][at], rate);
     }
 }
@@ -1083,10 +1108,10 @@ bool foundation_rates(const Foundation *f, const PatchIncrement *path, const Inc
 {
     bool corner = false;
     const SideRates path_side = {path, direction, rates, &corner};
-    const bool stays_there = path->start->approach == path->end->approach;
+    const bool is_constant_approach = path->start->approach == path->end->approach;
     *rate = (SliderUpdate){.loss = 0.0};
     const PatchState to = path->is_first ? *path->end : state_beside(f, path->end, direction->ends[1], &corner);
-    const PatchState from = stays_there ? to : *path->start;
+    const PatchState from = is_constant_approach ? to : *path->start;
     const int full = from.full_ranges < to.full_ranges ? from.full_ranges : to.full_ranges;
     const bool enters = to.touched_ranges > to.full_ranges && to.approach == f->height[to.full_ranges];
     const int touched = from.touched_ranges > to.touched_ranges ? from.touched_ranges : to.touched_ranges;
@@ -1094,7 +1119,7 @@ bool foundation_rates(const Foundation *f, const PatchIncrement *path, const Inc
     if (touched == full)
         return corner;
     MiddleState found = {.known = false};
-    const PatchState middle = stays_there ? to : *middle_state(f, path, &found);
+    const PatchState middle = is_constant_approach ? to : *middle_state(f, path, &found);
     for (int i = full; i < touched; i++) {
         const bool is_onset = to.approach == f->height[i];
         if (!is_onset || from.approach > to.approach)

@@ -1,5 +1,5 @@
-/* Repeats `Foundation` in sliders.py of the package: the friction sliders of one patch, which follow from the normal
- * law. Forces and stiffnesses are per area. */
+/* Repeats `Foundation` in sliders.py of the package: the friction sliders of one patch. Their stiffnesses and limits
+ * follow from its curve of pressure over approach. Forces and stiffnesses are per area. */
 #ifndef JOINTFMU_FOUNDATION_H
 #define JOINTFMU_FOUNDATION_H
 
@@ -7,13 +7,13 @@
 #include "jenkins.h"
 
 enum {
-    N_HEIGHTS = N_BELOW + N_ABOVE + 3,
+    N_HEIGHTS = HEIGHTS_BELOW_REFERENCE + HEIGHTS_ABOVE_REFERENCE + 3,
     N_RANGES = N_HEIGHTS - 1, /* ranges of springs between two heights; each has two sliders */
-    FOUNDATION_SLIDERS = 2 * N_RANGES /* in the order of the heights; of each range the slider that slips first, then
-                                         the other one */
+    /* in the order of the heights; of each range the slider that slips first, then the other one */
+    FOUNDATION_SLIDER_COUNT = 2 * N_RANGES
 };
 
-_Static_assert((int)FOUNDATION_SLIDERS <= (int)MAX_SLIDERS, "all sliders of a patch in one call");
+_Static_assert((int)FOUNDATION_SLIDER_COUNT <= (int)MAX_SLIDERS, "all sliders of a patch in one call");
 
 typedef struct {
     const Curve *curve;
@@ -24,20 +24,20 @@ typedef struct {
     double min_approach;   /* smallest approach [m] since the heights were set */
     int liftoff_height;    /* index of the height that moved from `replaced_height` [m] to `min_approach`; 0: none */
     double replaced_height;
-    double height[N_HEIGHTS], load[N_HEIGHTS], stiffness[N_HEIGHTS]; /* [m], [Pa] and [Pa/m] of the curve there */
+    double height[N_HEIGHTS], load[N_HEIGHTS], stiffness[N_HEIGHTS]; /* [m]; pressure [Pa], stiffness [Pa/m] there */
     double normal_stiffness[N_RANGES]; /* stiffness of all springs of a range [Pa/m] */
     double normal_force[N_RANGES];     /* normal force of a range when its last spring touches [Pa] */
-    double force_deviation[N_RANGES];  /* then: deviation of both sliders from their mean normal force [Pa] */
+    double force_deviation[N_RANGES];  /* at that approach: deviation of both sliders from their mean force [Pa] */
     /* Sliders of ranges in full contact: tangential stiffness K, 1/K, and the limit at zero approach, from which it
      * increases by K mu/ratio. */
-    double K[FOUNDATION_SLIDERS], per_K[FOUNDATION_SLIDERS], limit_at_zero_approach[FOUNDATION_SLIDERS];
+    double K[FOUNDATION_SLIDER_COUNT], per_K[FOUNDATION_SLIDER_COUNT], limit_at_zero_approach[FOUNDATION_SLIDER_COUNT];
     double stick_stiffness[N_RANGES]; /* sum of K of all sliders up to a range */
 } Foundation;
 
-/* A patch on the curve: approach [m], pressure [Pa] with two derivatives there, energy [J/m2]. */
+/* Normal state of a patch: approach [m], pressure [Pa] with two derivatives by the approach, energy [J/m2]. */
 typedef struct {
     double approach, y[3], energy;
-    int full_ranges, touched_ranges; /* numbers of ranges of which all, or some, springs touch */
+    int full_ranges, touched_ranges; /* numbers of ranges with all springs, or at least one spring, in contact */
 } PatchState;
 
 /* Increment of a patch: slider forces at the start, states at both ends, displacement [m] along x, along y and around
@@ -47,7 +47,7 @@ typedef struct {
     const PatchState *start, *end;
     double displacement[3];
     bool is_1d;    /* all forces and displacements are along x */
-    bool is_first; /* for rates: the heights are set at its end */
+    bool is_first; /* for rates: the slider heights are set at the end of this increment */
 } PatchIncrement;
 
 /* Rates of an increment: of the approaches at both ends [m], of the displacement [m]. */
@@ -62,14 +62,14 @@ static inline int touched_ranges_of(const PatchIncrement *path)
     return start > end ? start : end;
 }
 
-/* Update of a patch: traction against the displacement along x, along y and around the centre [Pa]; tangent xx, xy, yy,
- * xt, yt, tt for a further increment [Pa/m], t around the centre; heat [J/m2]. Or its rate. */
+/* Result of an increment of a patch, or its rate: traction against the displacement along x, along y and around the
+ * centre [Pa]; tangent stiffness xx, xy, yy, xr, yr, rr [Pa/m], r around the centre; dissipated energy [J/m2]. */
 typedef struct {
     double traction[3], tangent[6], loss;
 } SliderUpdate;
 
-/* Both sliders of a range in the batch, from row `at` on. If the contact state of the range changes, two rows with half
- * of the increment follow. */
+/* Rows of a batch for both sliders of a range, from row `at` on. If springs of the range come into contact or lift off,
+ * two rows with half of the increment follow. */
 typedef struct {
     int at;
     bool stiffness_changes, contact_changes;
@@ -110,7 +110,7 @@ void foundation_set_heights(Foundation *foundation, double onset_approach);
 void heights_after_liftoff(Foundation *foundation, double min_approach);
 /* Find the numbers of ranges in contact. */
 void find_ranges(const Foundation *foundation, PatchState *state);
-/* State at an approach; the search starts with a number of ranges in full contact. */
+/* Normal state of a patch at an approach [m]; the search starts with `near` ranges in full contact. */
 PatchState patch_state(const Foundation *foundation, double approach, int near);
 /* Return-map all sliders for one increment. `force_end` gets the forces along x and along y of the sliders that touch
  * during the increment; forces along y are left out if the increment is along x under constant load. Results of sliders
@@ -123,9 +123,10 @@ void foundations_finish(SliderWork *work);
  * slider forces. */
 void foundation_traction_derivatives(const Foundation *f, const PatchIncrement *path, double step,
                                      double *const trial_force[2], SliderWork *work, double derivatives[4][3]);
-/* Tangential stiffness in full stick. */
+/* Tangential stiffness [Pa/m] of a patch while all its sliders stick. */
 double stick_stiffness(const Foundation *foundation, const PatchState *state);
-/* Update in full stick from a traction; false: it exceeds what FULL_STICK_OVER_GROSS_SLIP_DISPLACEMENT allows. */
+/* Update of a patch while all its sliders stick, from the traction at the start; false: the displacement exceeds
+ * FULL_STICK_OVER_GROSS_SLIP_DISPLACEMENT, so sliders may slip. */
 bool full_stick_update(const Foundation *foundation, const PatchIncrement *path, const double traction[3],
                        SliderUpdate *update);
 /* Rate of `full_stick_update`, from rates of the increment, on the side to which `direction` points; true: the
@@ -135,7 +136,7 @@ bool full_stick_rates(const Foundation *foundation, const PatchIncrement *path, 
 /* Distribute a traction of full stick to the sliders, by stiffness. */
 void distribute_stick_force(const Foundation *foundation, const PatchState *state, const double traction[3],
                             double *const force[2]);
-/* Rate of `foundation_advance`; arguments and result are as for `full_stick_rates`. */
+/* Rate of the update by `foundation_advance`; arguments and result are as for `full_stick_rates`. */
 bool foundation_rates(const Foundation *foundation, const PatchIncrement *path, const IncrementRate *direction,
                       const IncrementRate *rates, SliderUpdate *rate);
 

@@ -5,11 +5,11 @@
 
 #include "optimize_for_size.h"
 
-_Static_assert((int)HISTORY_NORMAL == (int)HISTORY_FORCE + MAX_PATCHES * 2 * FOUNDATION_SLIDERS,
+_Static_assert((int)HISTORY_NORMAL == (int)HISTORY_FORCE + MAX_PATCHES * 2 * FOUNDATION_SLIDER_COUNT,
                "room for all patches");
 
 /* Slider forces of patch j along x in a history; those along y follow. */
-enum { PATCH_FORCES = 2 * FOUNDATION_SLIDERS };
+enum { PATCH_FORCES = 2 * FOUNDATION_SLIDER_COUNT };
 
 static inline const double *forces_of(const double *history, int j)
 {
@@ -43,7 +43,7 @@ static void set_patch_heights(Friction *friction, int j, const double *history, 
  * approach. States are kept where they are still right. */
 static void find_states(Friction *friction, const Contact *contact, const double *history)
 {
-    const bool is_known = history[HISTORY_STATE] != (double)UNKNOWN;
+    const bool is_known = history[HISTORY_STATE] != (double)BEFORE_FIRST_STEP;
     for (int j = 0; j < n_patches(); j++) {
         PatchState *first = &friction->start[j], *last = &friction->end[j];
         const double end = contact->patch_approach[j];
@@ -77,7 +77,7 @@ static inline PatchIncrement increment_of(const Friction *friction, int j, const
     const bool leaves_stick = friction->state != FULL_STICK && history[HISTORY_STATE] < (double)SLIP_1D;
     const double *force = leaves_stick ? friction->stick_force[j][0] : forces_of(history, j);
     const double *u = friction->increment[j];
-    return (PatchIncrement){.force = {force, force + FOUNDATION_SLIDERS},
+    return (PatchIncrement){.force = {force, force + FOUNDATION_SLIDER_COUNT},
                             .start = &friction->start[j],
                             .end = &friction->end[j],
                             .displacement = {u[0], u[1], u[2]},
@@ -90,7 +90,7 @@ static int slip_state(const double *history, const double *q)
     bool is_1d = !ELASTIC && history[HISTORY_STATE] != (double)SLIP_2D && q[S_Y] == history[HISTORY_TANGENTIAL + 1] &&
                  q[THETA_Z] == history[HISTORY_TANGENTIAL + 2];
     for (int j = 0; j < n_patches() && is_1d; j++) {
-        const double *force_y = forces_of(history, j) + FOUNDATION_SLIDERS;
+        const double *force_y = forces_of(history, j) + FOUNDATION_SLIDER_COUNT;
         is_1d = force_y[0] == 0.0 && force_y[1] == 0.0;
     }
     return is_1d ? SLIP_1D : SLIP_2D;
@@ -101,8 +101,8 @@ static inline void full_stick_force(const double *history, int j, double tractio
 {
     const double *force = forces_of(history, j);
     traction[0] = force[0];
-    traction[1] = force[FOUNDATION_SLIDERS];
-    traction[2] = force[FOUNDATION_SLIDERS + 1];
+    traction[1] = force[FOUNDATION_SLIDER_COUNT];
+    traction[2] = force[FOUNDATION_SLIDER_COUNT + 1];
 }
 
 /* Update all patches in full stick; false: a patch moves more than FULL_STICK_OVER_GROSS_SLIP_DISPLACEMENT allows. */
@@ -154,20 +154,20 @@ static void advance_patch(Friction *friction, int j, const double *history, doub
     const PatchIncrement increment = increment_of(friction, j, history);
     const int n = 2 * touched_ranges_of(&increment), n_y = friction->state < SLIP_2D ? 0 : n;
     foundation_advance(&friction->foundation[j], &increment, force, &friction->work, &friction->update[j]);
-    memset(force[0] + n, 0, (size_t)(FOUNDATION_SLIDERS - n) * sizeof *force[0]);
-    memset(force[1] + n_y, 0, (size_t)(FOUNDATION_SLIDERS - n_y) * sizeof *force[1]);
+    memset(force[0] + n, 0, (size_t)(FOUNDATION_SLIDER_COUNT - n) * sizeof *force[0]);
+    memset(force[1] + n_y, 0, (size_t)(FOUNDATION_SLIDER_COUNT - n_y) * sizeof *force[1]);
 }
 
 static void store_full_stick_force(const SliderUpdate *update, double *const force[2])
 {
     for (int d = 0; d < 2; d++) {
-        memset(force[d], 0, FOUNDATION_SLIDERS * sizeof *force[d]);
+        memset(force[d], 0, FOUNDATION_SLIDER_COUNT * sizeof *force[d]);
         force[d][0] = update->traction[d];
     }
     force[1][1] = update->traction[2];
 }
 
-/* State, heat [J] and rigid displacement of a history. */
+/* State, loss [J] and rigid displacement of a history. */
 static void set_history(int state, double loss, const double rigid[3], double *after)
 {
     after[HISTORY_STATE] = state;
@@ -177,11 +177,11 @@ static void set_history(int state, double loss, const double rigid[3], double *a
 
 void update_friction(Friction *friction, const Contact *contact, const double *history, const double *q, double *after)
 {
-    double heat = 0.0;
+    double loss = 0.0;
     begin_update(friction, contact, history, q);
     for (int j = 0; j < n_patches(); j++) {
         double *const along_x = after + HISTORY_FORCE + j * PATCH_FORCES;
-        double *const force[2] = {along_x, along_x + FOUNDATION_SLIDERS};
+        double *const force[2] = {along_x, along_x + FOUNDATION_SLIDER_COUNT};
         if (friction->state == FULL_STICK)
             store_full_stick_force(&friction->update[j], force);
         else
@@ -192,13 +192,13 @@ void update_friction(Friction *friction, const Contact *contact, const double *h
     for (int j = 0; j < n_patches(); j++) {
         const double approach = friction->end[j].approach;
         const Foundation *f = &friction->foundation[j];
-        heat += data.patches[j][SHARE] * friction->update[j].loss;
+        loss += data.patches[j][SHARE] * friction->update[j].loss;
         after[HISTORY_ONSET_APPROACH + j] = sticks ? approach : f->onset_approach;
         after[HISTORY_MIN_APPROACH + j] = sticks ? approach : f->min_approach;
         after[HISTORY_APPROACH + j] = approach;
     }
     const double rigid[3] = {q[S_X], q[S_Y], q[THETA_Z]};
-    set_history(friction->state, history[HISTORY_LOSS] + contact->area * heat, rigid, after);
+    set_history(friction->state, history[HISTORY_LOSS] + contact->area * loss, rigid, after);
 }
 
 void update_without_history(Friction *friction, const Contact *contact, const double *history, double *after)
@@ -206,7 +206,7 @@ void update_without_history(Friction *friction, const Contact *contact, const do
     const double rigid[3] = {0.0};
     friction->state = FULL_STICK;
     find_states(friction, contact, history);
-    set_history(UNKNOWN, history[HISTORY_LOSS], rigid, after);
+    set_history(BEFORE_FIRST_STEP, history[HISTORY_LOSS], rigid, after);
 }
 
 /* Tangents */
@@ -220,10 +220,10 @@ static inline void directional_stiffness(const double *patch, const double tange
                              radius * radius * tangent[5]);
 }
 
-/* Stiffness against S_X, S_Y, THETA_Z: `stick` if all sliders stick; `lack`, its decrease if all sliders at their
- * limits slip; `signed_lack`, the decrease with the sign of the traction along the motion. */
+/* Stiffness against S_X, S_Y, THETA_Z: `stick` if all sliders stick; `decrease`, its decrease if all sliders at their
+ * limits slip; `signed_decrease`, this decrease with the sign of the traction along the motion. */
 typedef struct {
-    double stick[3], lack[3], signed_lack[3];
+    double stick[3], decrease[3], signed_decrease[3];
 } TangentSums;
 
 /* Sums over all patches: of their stick stiffness and tangents, or of rates of these. */
@@ -235,16 +235,16 @@ static TangentSums sum_tangents(const Friction *friction, const double *stick_st
         const double x = patch[POSITION_X], y = patch[POSITION_Y];
         const double t[3] = {traction[0], traction[1],
                              x * traction[1] - y * traction[0] + patch[RADIUS] * traction[2]};
-        double all[6], stick[3], lack[3], less[6];
+        double all[6], stick[3], decrease[3], tangent_decrease[6];
         stick_tangent(stick_stiffness[j], all);
         for (int d = 0; d < 6; d++)
-            less[d] = all[d] - updates[j].tangent[d];
+            tangent_decrease[d] = all[d] - updates[j].tangent[d];
         directional_stiffness(patch, all, stick);
-        directional_stiffness(patch, less, lack);
+        directional_stiffness(patch, tangent_decrease, decrease);
         for (int d = 0; d < 3; d++) {
             sums.stick[d] += stick[d];
-            sums.lack[d] += lack[d];
-            sums.signed_lack[d] += t[d] < 0.0 ? -lack[d] : lack[d];
+            sums.decrease[d] += decrease[d];
+            sums.signed_decrease[d] += t[d] < 0.0 ? -decrease[d] : decrease[d];
         }
     }
     return sums;
@@ -253,9 +253,10 @@ static TangentSums sum_tangents(const Friction *friction, const double *stick_st
 /* Stiffness in the direction in which more sliders slip, which the signs of `traction_sum` tell; or its rate. */
 static void weaker_direction(const TangentSums *sums, const double *traction_sum, double stiffness[3])
 {
-    for (int d = 0; d < 3; d++)
-        stiffness[d] = sums->stick[d] - 0.5 * (sums->lack[d] + (traction_sum[d] < 0.0 ? -sums->signed_lack[d]
-                                                                                     : sums->signed_lack[d]));
+    for (int d = 0; d < 3; d++) {
+        const double magnitude = traction_sum[d] < 0.0 ? -sums->signed_decrease[d] : sums->signed_decrease[d];
+        stiffness[d] = sums->stick[d] - 0.5 * (sums->decrease[d] + magnitude);
+    }
 }
 
 void continued_motion_stiffness(Friction *friction, double stiffness[3])
@@ -265,7 +266,7 @@ void continued_motion_stiffness(Friction *friction, double stiffness[3])
     for (int j = 0; j < n_patches(); j++)
         stick[j] = stick_stiffness(&friction->foundation[j], &friction->end[j]);
     const TangentSums sums = sum_tangents(friction, stick, friction->update);
-    memcpy(friction->traction_sum, sums.signed_lack, sizeof sums.signed_lack);
+    memcpy(friction->traction_sum, sums.signed_decrease, sizeof sums.signed_decrease);
     weaker_direction(&sums, friction->traction_sum, stiffness);
 }
 
@@ -352,7 +353,7 @@ SliderUpdate update_rate(Friction *friction, int j, const double *history, const
                          const double displacement_rate[3])
 {
     const Foundation *f = &friction->foundation[j];
-    const bool is_first = !after && history[HISTORY_STATE] == (double)UNKNOWN;
+    const bool is_first = !after && history[HISTORY_STATE] == (double)BEFORE_FIRST_STEP;
     const IncrementRate rates = {{is_first ? approach_rate : 0.0, approach_rate},
                                  {displacement_rate[0], displacement_rate[1], displacement_rate[2]}};
     IncrementRate direction = friction->direction[j];
@@ -363,7 +364,7 @@ SliderUpdate update_rate(Friction *friction, int j, const double *history, const
     if (after) { /* a further motion from the end of the last update */
         const double *force = forces_of(after, j);
         increment = (PatchIncrement){
-            .force = {force, force + FOUNDATION_SLIDERS}, .start = &friction->end[j], .end = &friction->end[j]};
+            .force = {force, force + FOUNDATION_SLIDER_COUNT}, .start = &friction->end[j], .end = &friction->end[j]};
     }
     if (friction->state == FULL_STICK) {
         double before[3];

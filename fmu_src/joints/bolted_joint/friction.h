@@ -23,8 +23,8 @@ typedef struct {
     bool has_history;
     double mu, stiffness_ratio;
     SliderWork work;
-    double trial_force[2][FOUNDATION_SLIDERS];                /* room for slider forces that are not kept */
-    double stick_force[MAX_PATCHES][2][FOUNDATION_SLIDERS];  /* slider forces at the end of full stick */
+    double trial_force[2][FOUNDATION_SLIDER_COUNT];                /* temporary slider forces */
+    double stick_force[MAX_PATCHES][2][FOUNDATION_SLIDER_COUNT];  /* slider forces at the end of full stick */
     /* The last update: FULL_STICK, SLIP_1D or SLIP_2D; states at both ends, increments [m], results. */
     int state;
     PatchState start[MAX_PATCHES], end[MAX_PATCHES];
@@ -42,19 +42,19 @@ typedef struct {
 
 /* Sliders of all patches, once for a parameter set; `use_avx`: the processor has AVX. */
 void friction_tabulate(Friction *friction, const Contact *contact, bool use_avx);
-/* Increments of the patches [m] from the history to q and the deformation of the bodies. */
+/* Increments of the patches [m] from the history to q and the deformation of the members. */
 void set_increments(Friction *friction, const Bodies *bodies, const double *history, const double *q);
 /* Tractions and tangents of the patches after their increments to the patch approaches, without losses. */
 void update_traction(Friction *friction, const Contact *contact, const double *history, const double *q);
 /* Tractions, tangents and losses of the patches after their increments, and the history at the end. */
 void update_friction(Friction *friction, const Contact *contact, const double *history, const double *q, double *after);
-/* Without history: the states of the patches at their approaches, and a history that stays as it is. */
+/* Update for a joint without history: normal states of the patches at their approaches; the history is unchanged. */
 void update_without_history(Friction *friction, const Contact *contact, const double *history, double *after);
 
 /* Derivatives of the tractions after the last increments. Ranges whose contact changes are differentiated by
  * differences over an opening `step` [m]. */
 void traction_derivatives(Friction *friction, double step, const double *history, TractionDerivatives *derivatives);
-/* Traction derivatives from a tangent xx, xy, yy, xt, yt, tt; without derivatives by the opening. */
+/* Traction derivatives from a tangent xx, xy, yy, xr, yr, rr; without derivatives by the opening. */
 void derivatives_of_tangent(const double tangent[6], TractionDerivatives derivatives);
 /* Tangent while all sliders of a patch stick, from their stiffness. */
 static inline void stick_tangent(double stiffness, double tangent[6])
@@ -73,12 +73,12 @@ static inline void point_stiffness(const double *point, const double *tangent, d
     stiffness[2] = share * (y * y * tangent[0] - 2.0 * x * y * tangent[1] + x * x * tangent[2]);
 }
 
-/* Heights of the sliders as the next update from a history sets them. */
+/* Set the slider heights to those that the next update from a history uses. */
 void set_heights_from(Friction *friction, const double *history);
-/* Rates of the increments along a seed, from the rates of the points and of the bodies. */
+/* Rates of the increments along a seed, from the rates of the points and of the members. */
 void increment_rates(const Friction *friction, const Contact *contact, const Bodies *bodies, const double *q_rate,
                      const double bolts[4], IncrementRate *rates);
-/* Take rates on the side to which the patches move. */
+/* Set the directions of the increments from their rates along the seed, or against the seed, as `side` says. */
 void set_direction(Friction *friction, const IncrementRate *rates);
 /* Rate of the update of patch j, from rates of its approach and displacement [m]. `after`: NULL, or the history after
  * the last update, from which a further motion starts. */

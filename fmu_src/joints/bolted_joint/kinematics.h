@@ -1,5 +1,5 @@
 /* Repeats kinematics.py of the package: relative displacement q of side 2, and the motion of points, patches and bolts
- * that it causes between rigid bodies. */
+ * that it causes between rigid members. */
 #ifndef JOINTFMU_KINEMATICS_H
 #define JOINTFMU_KINEMATICS_H
 
@@ -24,7 +24,7 @@ static inline int n_patches(void)
     return (int)data.n_patches;
 }
 
-/* Index of a component of q in the inputs. */
+/* Index in the inputs of a component of the relative displacement q. */
 static inline int input_of(int component)
 {
     return component < THETA_X ? INPUT_S_REL_X + component : INPUT_THETA_X + component - THETA_X;
@@ -37,13 +37,13 @@ static inline void relative_displacement(const double *inputs, double q[N_DISPLA
         q[d] = inputs[input_of(d)];
 }
 
-/* Opening [m] of rigid bodies at a position x, y [m]. */
+/* Opening [m] of rigid members at a position x, y [m]. */
 static inline double rigid_opening(double x, double y, const double q[N_DISPLACEMENTS])
 {
     return q[S_Z] + q[THETA_X] * y - q[THETA_Y] * x;
 }
 
-/* Opening [m] of rigid bodies at a point or patch. */
+/* Opening [m] of rigid members at a point or patch. */
 static inline double opening_at(const double *point, const double q[N_DISPLACEMENTS])
 {
     return rigid_opening(point[POSITION_X], point[POSITION_Y], q);
@@ -57,7 +57,7 @@ static inline void opening_jacobian(double x, double y, double row[3])
     row[2] = -x;
 }
 
-/* Displacement [m] of rigid bodies at a point or patch along x and y. */
+/* Displacement [m] of rigid members at a point or patch along x and y. */
 static inline double tangential_x(const double *point, const double q[N_DISPLACEMENTS])
 {
     return q[S_X] - q[THETA_Z] * point[POSITION_Y];

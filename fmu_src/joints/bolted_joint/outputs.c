@@ -153,27 +153,13 @@ void sum_patches(OutputSums *sums, Friction *friction, const double *after, doub
     sums->x[SUM_LOSS] = after[HISTORY_LOSS] / area;
 }
 
-/* Integral of the curve from its beginning to an approach, the load and its slope. */
-static inline double energy_at(const Contact *contact, double approach, double *y)
-{
-    const Curve *curve = contact->curve;
-    const double inside =
-        approach < curve->start.x ? curve->start.x : (approach > curve->end.x ? curve->end.x : approach);
-    const int segment = curve_find_segment(curve, inside);
-    const double t = segment_parameter(curve, segment, inside), beyond = approach - inside;
-    segment_derivatives(curve, segment, t, 1, y);
-    const double energy = segment_energy(curve, segment, t) + beyond * (y[0] + 0.5 * beyond * y[1]);
-    y[0] += beyond * y[1];
-    return energy;
-}
-
-/* Integral and load as from `energy_at`, faster inside the table; no slope. */
+/* Energy of the curve at an approach, and its load there: as `curve_energy`, but faster inside the table. */
 static inline double energy_and_load(const Contact *contact, double approach, double *load)
 {
     const Curve *curve = contact->curve;
     double y[2];
     if (!(approach >= curve->start.x && approach < curve->end.x)) {
-        const double energy = energy_at(contact, approach, y);
+        const double energy = curve_energy(curve, approach, 1, y);
         *load = y[0];
         return energy;
     }
@@ -239,7 +225,7 @@ void sum_cycles(OutputSums *sums, const Friction *friction, const Contact *conta
     sums->x[SUM_LOOP_ENERGY] = energies;
 }
 
-/* Bolts between rigid bodies */
+/* Bolts between rigid members */
 
 static void add_elongation(const double *bolt, double elongation, double *x)
 {
@@ -250,17 +236,18 @@ static void add_elongation(const double *bolt, double elongation, double *x)
 
 void sum_gaps(OutputSums *sums, Bolts *bolts, double area, const double *q)
 {
-    double missing = 0.0, about_x = 0.0, about_y = 0.0, *x = sums->x;
+    double inactive_sum = 0.0, about_x = 0.0, about_y = 0.0, *x = sums->x;
     for (int b = 0; b < (int)data.n_bolts; b++) {
         const double *bolt = data.bolts[b];
         elongate_bolt(bolts, b, rigid_elongation(b, q));
-        add_elongation(bolt, bolts->count * bolts->gap[b], x);
-        const double lost = bolts->count * (bolts->stiffness - bolts->stiffness * bolts->active_fraction[b]);
-        missing += lost;
-        about_x += lost * (bolt[BOLT_Y] * bolt[BOLT_Y]);
-        about_y += lost * (bolt[BOLT_X] * bolt[BOLT_X]);
+        add_elongation(bolt, bolts->bolts_per_position * bolts->gap[b], x);
+        const double inactive_stiffness =
+            bolts->bolts_per_position * (bolts->stiffness - bolts->stiffness * bolts->active_fraction[b]);
+        inactive_sum += inactive_stiffness;
+        about_x += inactive_stiffness * (bolt[BOLT_Y] * bolt[BOLT_Y]);
+        about_y += inactive_stiffness * (bolt[BOLT_X] * bolt[BOLT_X]);
     }
-    x[SUM_NORMAL_STIFFNESS] -= missing / area;
+    x[SUM_NORMAL_STIFFNESS] -= inactive_sum / area;
     x[SUM_NORMAL_ABOUT_X] -= about_x / area;
     x[SUM_NORMAL_ABOUT_Y] -= about_y / area;
 }
@@ -278,9 +265,9 @@ void set_output_arguments(OutputSums *sums, const Contact *contact, const double
 
 OPTIMIZE_FOR_SIZE
 
-/* Elastic bodies */
+/* Elastic members */
 
-/* Stiffness of the joint over the area, or its rate, without the stiffness of bolts between rigid bodies. */
+/* Stiffness of the joint over the area, or its rate, without the stiffness of bolts between rigid members. */
 static void set_condensed(const Equilibrium *e, const double stiffness[N_DISPLACEMENTS], double bolt_stiffness,
                           double *x)
 {
@@ -306,7 +293,7 @@ void elastic_member_sums(OutputSums *sums, const Equilibrium *e, const double *q
     double energy = 0.0;
     set_condensed(e, e->condensed, bolts->stiffness, sums->x);
     for (int b = 0; b < (int)data.n_bolt_elongation; b++)
-        add_elongation(data.bolts[b], dense_dot(bodies->elongation_jacobian[b], a) + bolts->gap[b], sums->x);
+        add_elongation(data.bolts[b], dense_dot(bodies->full_elongation_jacobian[b], a) + bolts->gap[b], sums->x);
     for (int k = 0; k < MODES; k++)
         energy += bodies->stiffness[k] * a[k] * a[k];
     for (int b = 0; b < (int)data.n_bolt_elongation; b++) {
@@ -402,7 +389,8 @@ static void add_cycle_rate(const Friction *friction, const Contact *contact, con
         small_cycle_energies_seed(x, NULL, y);
     } else {
         double load[2];
-        const double energy = state->energy - energy_at(contact, state->approach - amplitude / reach, load);
+        const double slipped_energy = curve_energy(contact->curve, state->approach - amplitude / reach, 1, load);
+        const double energy = state->energy - slipped_energy;
         const double rate[N_CYCLE - L_AMPLITUDE] = {amplitude_rate, upper[1] * approach_rate, lower[1] * lower_rate,
                                                     upper[0] * approach_rate - lower[0] * lower_rate};
         x[L_LOAD] = upper[0];
@@ -425,7 +413,8 @@ void add_cycle_rates(const Friction *friction, const Contact *contact, const Bod
 void add_gap_rates(const Bolts *bolts, const double *q_rate, double *dx)
 {
     for (int b = 0; b < (int)data.n_bolts; b++)
-        add_elongation(data.bolts[b], bolts->count * bolt_gap_rate(bolts, b, rigid_elongation(b, q_rate)), dx);
+        add_elongation(data.bolts[b],
+                       bolts->bolts_per_position * bolt_gap_rate(bolts, b, rigid_elongation(b, q_rate)), dx);
 }
 
 /* Rates of the condensed stiffness. It is stationary in the modal rates, so only changes of the tangents matter. */
@@ -438,16 +427,16 @@ static void condensed_rates(const Equilibrium *e, double rates[N_DISPLACEMENTS])
         q[d] = 1.0;
         for (int i = 0; i < n_points(); i++) {
             const PointRate *rate = &e->assembly.contact->rate[i];
-            const double u = opening_at(data.points[i], q) + dense_dot(bodies->opening_jacobian[i], z);
+            const double u = opening_at(data.points[i], q) + dense_dot(bodies->full_opening_jacobian[i], z);
             sum += data.points[i][SHARE] * (rate->derivatives[2] * rate->approach) * u * u;
         }
         for (int j = 0; j < n_patches(); j++) {
             const double *t = e->assembly.friction->rate[j].tangent;
             double rigid[3];
             tangential_displacement(data.patches[j], q, rigid);
-            const double u = rigid[0] + dense_dot(bodies->patch_jacobian[0][j], z);
-            const double v = rigid[1] + dense_dot(bodies->patch_jacobian[1][j], z);
-            const double w = rigid[2] + dense_dot(bodies->patch_jacobian[2][j], z);
+            const double u = rigid[0] + dense_dot(bodies->full_tangential_jacobian[0][j], z);
+            const double v = rigid[1] + dense_dot(bodies->full_tangential_jacobian[1][j], z);
+            const double w = rigid[2] + dense_dot(bodies->full_tangential_jacobian[2][j], z);
             sum += data.patches[j][SHARE] * (t[0] * u * u + t[2] * v * v + t[5] * w * w +
                                              2.0 * (t[1] * u * v + t[3] * u * w + t[4] * v * w));
         }
@@ -468,7 +457,7 @@ void add_elastic_member_rates(const Equilibrium *e, const double *q, const doubl
     for (int b = 0; b < (int)data.n_bolt_elongation; b++)
         gap_rates[b] = bolt_gap_rate(bolts, b, bolt_elongation(bodies, b, q_rate, a_rate));
     for (int b = 0; b < (int)data.n_bolt_elongation; b++)
-        add_elongation(data.bolts[b], dense_dot(bodies->elongation_jacobian[b], a_rate) + gap_rates[b], dx);
+        add_elongation(data.bolts[b], dense_dot(bodies->full_elongation_jacobian[b], a_rate) + gap_rates[b], dx);
     for (int k = 0; k < MODES; k++)
         energy += bodies->stiffness[k] * a[k] * a_rate[k];
     for (int b = 0; b < (int)data.n_bolt_elongation; b++)

@@ -23,7 +23,7 @@ typedef struct {
 
 /* Sums over the points that were evaluated last. */
 void sum_points(OutputSums *sums, const Contact *contact);
-/* Sums over the points between rigid bodies. The points are evaluated first, unless q has the normal components of the
+/* Sums over the points between rigid members. The points are evaluated first, unless q has the normal components of the
  * last evaluation. */
 bool evaluate_point_sums(OutputSums *sums, Contact *contact, const Bodies *bodies, const double *q, Text *reason);
 /* Sums over the points with elastic shear, without history. */
@@ -35,9 +35,9 @@ void sum_patches(OutputSums *sums, Friction *friction, const double *after, doub
 /* Loss and elastic energy of a cycle with the present displacement of the patches as amplitude. */
 void sum_cycles(OutputSums *sums, const Friction *friction, const Contact *contact, const Bodies *bodies,
                 const double *q);
-/* Gaps of the bolts between rigid bodies, and the stiffness that bolts at lift-off lack. */
+/* Gaps of the bolts between rigid members, and the stiffness of bolts that is inactive because heads lift off. */
 void sum_gaps(OutputSums *sums, Bolts *bolts, double area, const double *q);
-/* Condensed stiffness without the bolts between rigid bodies, elongation of the bolts, elastic energy. */
+/* Condensed stiffness without the bolts between rigid members, elongation of the bolts, elastic energy. */
 void elastic_member_sums(OutputSums *sums, const Equilibrium *equilibrium, const double *q);
 /* Set the arguments of `outputs` that are not sums. */
 void set_output_arguments(OutputSums *sums, const Contact *contact, const double *inputs);
@@ -52,7 +52,7 @@ void add_cycle_rates(const Friction *friction, const Contact *contact, const Bod
                      const IncrementRate *rates, double *dx);
 void add_gap_rates(const Bolts *bolts, const double *q_rate, double *dx);
 void add_elastic_member_rates(const Equilibrium *equilibrium, const double *q, const double *q_rate, double *dx);
-/* Rates of the forces of the bolts between elastic bodies. */
+/* Rates of the forces of the bolts between elastic members. */
 void bolt_force_rates(const Equilibrium *equilibrium, const double *q_rate, double *rates);
 
 #endif

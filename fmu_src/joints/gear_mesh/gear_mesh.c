@@ -8,7 +8,7 @@
 #include "tabulated_joint.h"
 
 _Static_assert(N_LAW_STATE == 0, "the mesh needs the curve of the flanks only");
-_Static_assert(PAIR_CLOSING_STEPS % 2 == 0, "the error of a curve is measured on pairs of segments");
+_Static_assert(TOOTH_PAIR_CLOSING_STEPS % 2 == 0, "the error of a curve is measured on pairs of segments");
 
 static bool tabulate_flanks(Joint *joint, int steps, Text *reason)
 {
@@ -22,7 +22,7 @@ static Node pair_node(const Joint *joint, double approach, const double *pressur
 {
     const double x[4] = {approach, pressure[0], pressure[1], pressure_curvature};
     double y[4];
-    combine_in_series(x, joint->constants, y);
+    combine_flanks_and_teeth(x, joint->constants, y);
     return (Node){.x = y[0], .y = y[1], .stiffness = y[2], .stiffness_slope = y[3]};
 }
 
@@ -46,10 +46,10 @@ static bool add_node(Joint *joint, double x, bool is_first, int last_node)
 static bool tabulate_closing(Joint *joint, int divisions)
 {
     const Curve *flanks = &joint->model.flanks;
-    const int steps = PAIR_CLOSING_STEPS * divisions;
+    const int steps = TOOTH_PAIR_CLOSING_STEPS * divisions;
     for (int i = 0; i <= steps; i++) {
         const double t = (double)i / steps;
-        if (!add_node(joint, (1.0 - t * t) * flanks->segments[0].x, i == 0, CLOSING_STEPS))
+        if (!add_node(joint, (1.0 - t * t) * flanks->segments[0].x, i == 0, CONTACT_CLOSING_STEPS))
             return false;
     }
     return true;
@@ -87,10 +87,10 @@ static int find_pressure_node(const Curve *flanks, double pressure)
 static int find_pieces(const JointModel *model, const double *c, int *nodes)
 {
     const SpotDistribution *spots = &model->spots;
-    const double min_pressure = model->flanks.segments[CLOSING_STEPS].coefficients[0];
+    const double min_pressure = model->flanks.segments[CONTACT_CLOSING_STEPS].coefficients[0];
     const double max_pressure = model->flanks.end.y;
     int n = 0;
-    nodes[0] = CLOSING_STEPS;
+    nodes[0] = CONTACT_CLOSING_STEPS;
     for (int i = 0; i < spots->n_regime_ends; i++) {
         double y[N_LAW_TOTALS];
         spot_totals(spots, c, spots->regime_ends[i], y);
@@ -107,7 +107,7 @@ static bool tabulate_pair(Joint *joint, int divisions, Text *reason)
 {
     int nodes[N_LAW_REGIME_ENDS + 2];
     const int n_pieces = find_pieces(&joint->model, joint->constants, nodes);
-    const int n_segments = PAIR_CLOSING_STEPS + nodes[n_pieces] - nodes[0]; /* before they are divided */
+    const int n_segments = TOOTH_PAIR_CLOSING_STEPS + nodes[n_pieces] - nodes[0]; /* before they are divided */
     if (!curve_begin(&joint->curve, n_segments * divisions + 1, 0, joint->model.flanks.error, reason) ||
         !tabulate_closing(joint, divisions))
         return false;
@@ -127,7 +127,7 @@ bool tabulate_model(Joint *joint, Text *reason)
     const double closed[2] = {model->approach.closing_end_pressure, 0.0};
     model->flanks = joint->curve;
     memset(&joint->curve, 0, sizeof joint->curve);
-    model->closing_end = pair_node(joint, -model->flanks.segments[0].x, closed, 0.0).x;
+    model->closing_end_deflection = pair_node(joint, -model->flanks.segments[0].x, closed, 0.0).x;
     const bool is_accurate = refine_curve(joint, tabulate_pair, 1, reason);
     curve_free(&model->flanks);
     if (is_accurate)
@@ -138,15 +138,7 @@ bool tabulate_model(Joint *joint, Text *reason)
 /* Tooth pair at a deflection: load, stiffness and energy x; load and its derivatives y up to `order`. */
 static void evaluate_pair(const Joint *joint, double deflection, int order, double *x, double *y)
 {
-    const Curve *curve = &joint->curve;
-    const double clipped = fmin(deflection, curve->end.x), excess = fmax(deflection - clipped, 0.0);
-    const int i = curve_find_segment(curve, clipped);
-    const double t = segment_parameter(curve, i, clipped);
-    segment_derivatives(curve, i, t, order, y);
-    x[2] = segment_energy(curve, i, t) + excess * (y[0] + 0.5 * excess * y[1]);
-    y[0] += excess * y[1];
-    for (int k = 2; k <= order && excess > 0.0; k++)
-        y[k] = 0.0;
+    x[2] = curve_energy(&joint->curve, deflection, order, y);
     x[0] = y[0];
     x[1] = y[1];
 }
@@ -154,7 +146,7 @@ static void evaluate_pair(const Joint *joint, double deflection, int order, doub
 enum {
     N_PAIR_RESULTS = 3,
     N_OUTPUT_ARGUMENTS = 1 + N_INPUTS + N_PAIR_RESULTS
-}; /* arguments of `outputs`: closing_end, inputs, results of `evaluate_pair` */
+}; /* arguments of `outputs`: closing_end_deflection, inputs, results of `evaluate_pair` */
 
 bool joint_evaluate(Joint *joint, const double *inputs, const double *history, double *history_end, size_t n_outputs,
                     double *out, Text *reason)
@@ -162,7 +154,7 @@ bool joint_evaluate(Joint *joint, const double *inputs, const double *history, d
     double deflection, x[N_OUTPUT_ARGUMENTS], y[2];
     (void)history, (void)history_end, (void)n_outputs, (void)reason;
     curve_argument(inputs, joint->constants, &deflection);
-    x[0] = joint->model.closing_end;
+    x[0] = joint->model.closing_end_deflection;
     for (int i = 0; i < N_INPUTS; i++)
         x[1 + i] = inputs[i];
     evaluate_pair(joint, deflection, 1, &x[1 + N_INPUTS], y);
@@ -175,13 +167,13 @@ void joint_derivative(Joint *joint, const double *inputs, const double *history,
 {
     (void)history_end;
     double deflection, rate, inputs_and_seed[2 * N_INPUTS], x[2 * N_OUTPUT_ARGUMENTS - 1], y[3];
-    double *x_rate = &x[N_OUTPUT_ARGUMENTS]; /* rates of all arguments except closing_end */
+    double *x_rate = &x[N_OUTPUT_ARGUMENTS]; /* rates of all arguments except closing_end_deflection */
     (void)history, (void)n_outputs;
     for (int i = 0; i < N_INPUTS; i++) {
         x[1 + i] = inputs_and_seed[i] = inputs[i];
         x_rate[i] = inputs_and_seed[N_INPUTS + i] = seed[i];
     }
-    x[0] = joint->model.closing_end;
+    x[0] = joint->model.closing_end_deflection;
     curve_argument(inputs, joint->constants, &deflection);
     curve_argument_seed(inputs_and_seed, joint->constants, &rate);
     evaluate_pair(joint, deflection, 2, &x[1 + N_INPUTS], y);

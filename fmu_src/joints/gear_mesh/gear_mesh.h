@@ -8,7 +8,7 @@ typedef struct {
     SpotDistribution spots;
     ApproachTable approach;
     Curve flanks;       /* pressure over approach of the flanks, while the curve of the pair is computed from it */
-    double closing_end; /* deflection of a pair [m] at which the closing of its contact ends */
+    double closing_end_deflection; /* deflection of a pair [m] at which the closing of its contact ends */
 } JointModel;
 
 #endif

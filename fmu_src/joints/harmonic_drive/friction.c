@@ -25,7 +25,7 @@ double midline_wind_up(const Curve *curve, double torque)
 
 /* Hysteresis */
 
-_Static_assert(HYSTERESIS_SLIDERS % 4 == 0, "as sliders_advance_1d requires");
+_Static_assert(HYSTERESIS_SLIDER_COUNT % 4 == 0, "as sliders_advance_1d requires");
 
 static Sliders1D hysteresis_sliders(const Hysteresis *h, const double *history)
 {
@@ -36,7 +36,7 @@ SliderResultant hysteresis_advance(const Hysteresis *hysteresis, const double *h
 {
     const Sliders1D sliders = hysteresis_sliders(hysteresis, history);
     SliderResultant sum;
-    sliders_advance_1d(hysteresis->use_avx, HYSTERESIS_SLIDERS, &sliders, phi - history[HISTORY_WIND_UP],
+    sliders_advance_1d(hysteresis->use_avx, HYSTERESIS_SLIDER_COUNT, &sliders, phi - history[HISTORY_WIND_UP],
                        history_end + HISTORY_FORCE, &sum);
     return sum;
 }
@@ -44,7 +44,7 @@ SliderResultant hysteresis_advance(const Hysteresis *hysteresis, const double *h
 double hysteresis_loss_derivative(const Hysteresis *hysteresis, const double *history, double phi)
 {
     const Sliders1D sliders = hysteresis_sliders(hysteresis, history);
-    return sliders_loss_derivative_1d(HYSTERESIS_SLIDERS, &sliders, phi - history[HISTORY_WIND_UP]);
+    return sliders_loss_derivative_1d(HYSTERESIS_SLIDER_COUNT, &sliders, phi - history[HISTORY_WIND_UP]);
 }
 
 double hysteresis_solve_wind_up(const Hysteresis *hysteresis, const Curve *curve, const double *history, double torque)
@@ -53,11 +53,12 @@ double hysteresis_solve_wind_up(const Hysteresis *hysteresis, const Curve *curve
     const double upper = midline_wind_up(curve, torque + hysteresis->limit_torque);
     const Sliders1D sliders = hysteresis_sliders(hysteresis, history);
     double phi = fmin(fmax(history[HISTORY_WIND_UP], lower), upper), low = -INFINITY, high = INFINITY;
-    for (int k = 0; k < MAX_ITERATIONS; k++) {
+    for (int k = 0; k < MAX_INVERSION_ITERATIONS; k++) {
         double y[2], tangent;
         midline_torque(curve, phi, 1, y);
         const double residual =
-            torque - (y[0] + sliders_force_1d(HYSTERESIS_SLIDERS, &sliders, phi - history[HISTORY_WIND_UP], &tangent));
+            torque -
+            (y[0] + sliders_force_1d(HYSTERESIS_SLIDER_COUNT, &sliders, phi - history[HISTORY_WIND_UP], &tangent));
         const double step = phi + residual / (y[1] + tangent);
         if (residual > 0.0)
             low = phi;
@@ -80,8 +81,8 @@ static double unloading_friction(const Hysteresis *hysteresis, const Curve *curv
     const double turn_wind_up = hysteresis_solve_wind_up(hysteresis, curve, virgin, torque);
     const Sliders1D sliders = hysteresis_sliders(hysteresis, virgin);
     double tangent;
-    return 2.0 * sliders_force_1d(HYSTERESIS_SLIDERS, &sliders, 0.5 * (turn_wind_up - half_opening), &tangent) -
-           sliders_force_1d(HYSTERESIS_SLIDERS, &sliders, turn_wind_up, &tangent);
+    return 2.0 * sliders_force_1d(HYSTERESIS_SLIDER_COUNT, &sliders, 0.5 * (turn_wind_up - half_opening), &tangent) -
+           sliders_force_1d(HYSTERESIS_SLIDER_COUNT, &sliders, turn_wind_up, &tangent);
 }
 
 /* K_h [N.m/rad]; half_loop_torque is the torque of the midline at half of hysteresis_loss. */
@@ -97,11 +98,11 @@ static double initial_stiffness(const double *constants, const Curve *curve, dou
 /* Set M_f and what follows from it. */
 static void set_limit_torque(Hysteresis *hysteresis, const double *shares, double limit, double stiffness)
 {
-    hysteresis->is_active = limit > 0.0;
+    hysteresis->has_friction = limit > 0.0;
     hysteresis->limit_torque = limit;
     hysteresis->characteristic_wind_up = limit / stiffness;
-    for (int i = 0; i < HYSTERESIS_SLIDERS; i++)
-        hysteresis->limit[i] = limit * shares[HYSTERESIS_SLIDERS + i];
+    for (int i = 0; i < HYSTERESIS_SLIDER_COUNT; i++)
+        hysteresis->limit[i] = limit * shares[HYSTERESIS_SLIDER_COUNT + i];
 }
 
 bool hysteresis_tabulate(Hysteresis *hysteresis, const double *constants, const double *shares, const Curve *curve,
@@ -119,41 +120,41 @@ bool hysteresis_tabulate(Hysteresis *hysteresis, const double *constants, const 
         return false;
     }
     const double stiffness = initial_stiffness(constants, curve, half_loop_torque);
-    for (int i = 0; i < HYSTERESIS_SLIDERS; i++) {
+    for (int i = 0; i < HYSTERESIS_SLIDER_COUNT; i++) {
         hysteresis->K[i] = stiffness * shares[i];
         hysteresis->compliance[i] = 1.0 / hysteresis->K[i];
     }
     double limit = half_loop_torque;
-    for (int k = 0; k < MAX_LIMIT_ITERATIONS; k++) {
+    for (int k = 0; k < MAX_FRICTION_LIMIT_ITERATIONS; k++) {
         set_limit_torque(hysteresis, shares, limit, stiffness);
-        if (!hysteresis->is_active)
+        if (!hysteresis->has_friction)
             return true;
         const double previous = limit, opening_friction = unloading_friction(hysteresis, curve, constants[RATED_TORQUE],
                                                                              0.5 * constants[HYSTERESIS_LOSS]);
         limit *= opening_friction > 0.0 ? half_loop_torque / opening_friction : INFINITY;
         if (!(limit < constants[RATED_TORQUE]))
             break;
-        if (fabs(limit - previous) <= LIMIT_TOLERANCE * limit)
+        if (fabs(limit - previous) <= FRICTION_LIMIT_TOLERANCE * limit)
             return true;
     }
     text_append_format(
         reason,
-        "hysteresis_stiffness = %g N.m/rad is too small for a loop through rated torque that opens by %g rad; "
-        "allowed are 0 and larger ones",
+        "hysteresis_stiffness = %g N.m/rad is too small for a loop up to rated torque with hysteresis_loss = %g rad; "
+        "expected a larger value, or 0 for the default",
         constants[HYSTERESIS_STIFFNESS], constants[HYSTERESIS_LOSS]);
     return false;
 }
 
 /* Friction at the wave generator */
 
-_Static_assert(FRICTION_SLIDERS % 4 == 0, "as sliders_advance_1d requires");
+_Static_assert(FRICTION_SLIDER_COUNT % 4 == 0, "as sliders_advance_1d requires");
 
 void friction_tabulate(Friction *friction, double stiffness)
 {
-    friction->is_active = stiffness > 0.0;
-    for (int i = 0; i < FRICTION_SLIDERS; i++) {
+    friction->has_friction = stiffness > 0.0;
+    for (int i = 0; i < FRICTION_SLIDER_COUNT; i++) {
         friction->K[i] = stiffness * STIFFNESS_SHARES[i];
-        friction->compliance[i] = friction->is_active ? 1.0 / friction->K[i] : 0.0;
+        friction->compliance[i] = friction->has_friction ? 1.0 / friction->K[i] : 0.0;
     }
 }
 
@@ -170,7 +171,7 @@ static inline void slider_limits(const Friction *friction, const double *history
                                  const double *limit, double *restrict slider_limit)
 {
     const double positive = limit[0], negative = limit[1];
-    for (int i = 0; i < FRICTION_SLIDERS; i++)
+    for (int i = 0; i < FRICTION_SLIDER_COUNT; i++)
         slider_limit[i] =
             (history[HISTORY_FRICTION_TORQUE + i] + friction->K[i] * increment < 0.0 ? negative : positive) *
             LIMIT_SHARES[i];
@@ -179,15 +180,15 @@ static inline void slider_limits(const Friction *friction, const double *history
 SliderResultant friction_advance(const Friction *friction, const double *history, FrictionArguments arguments,
                                  double *history_end)
 {
-    double limit_start[FRICTION_SLIDERS], limit_end[FRICTION_SLIDERS];
+    double limit_start[FRICTION_SLIDER_COUNT], limit_end[FRICTION_SLIDER_COUNT];
     const double increment = rotation_increment(history, arguments);
     slider_limits(friction, history, increment, history + HISTORY_LIMIT, limit_start);
     slider_limits(friction, history, increment, arguments.limit, limit_end);
     const Sliders1D sliders = {friction->K, friction->compliance, limit_start, limit_end,
                                history + HISTORY_FRICTION_TORQUE};
     SliderResultant sum;
-    sliders_advance_1d(friction->use_avx, FRICTION_SLIDERS, &sliders, increment, history_end + HISTORY_FRICTION_TORQUE,
-                       &sum);
+    sliders_advance_1d(friction->use_avx, FRICTION_SLIDER_COUNT, &sliders, increment,
+                       history_end + HISTORY_FRICTION_TORQUE, &sum);
     history_end[HISTORY_ANGLE] = arguments.angle;
     history_end[HISTORY_LIMIT] = arguments.limit[0];
     history_end[HISTORY_LIMIT + 1] = arguments.limit[1];
@@ -201,7 +202,7 @@ SliderResultant friction_rate(const Friction *friction, const double *history, F
                               FrictionArguments rate)
 {
     const bool has_begun = history[HISTORY_BEGUN] > 0.0;
-    double limit_start[FRICTION_SLIDERS], limit_end[FRICTION_SLIDERS], limit_rate[FRICTION_SLIDERS];
+    double limit_start[FRICTION_SLIDER_COUNT], limit_end[FRICTION_SLIDER_COUNT], limit_rate[FRICTION_SLIDER_COUNT];
     const double increment = rotation_increment(history, arguments);
     slider_limits(friction, history, increment, history + HISTORY_LIMIT, limit_start);
     slider_limits(friction, history, increment, arguments.limit, limit_end);
@@ -209,7 +210,7 @@ SliderResultant friction_rate(const Friction *friction, const double *history, F
     const Sliders1D sliders = {friction->K, friction->compliance, limit_start, limit_end,
                                history + HISTORY_FRICTION_TORQUE};
     SliderResultant sum;
-    sliders_advance_1d_rate(FRICTION_SLIDERS, &sliders, increment,
+    sliders_advance_1d_rate(FRICTION_SLIDER_COUNT, &sliders, increment,
                             has_begun ? rate.angle : PRIOR_ROTATION_TIME * rate.speed, limit_rate, &sum);
     if (!has_begun)
         sum.loss = 0.0;

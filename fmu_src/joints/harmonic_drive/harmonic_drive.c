@@ -62,12 +62,14 @@ static bool tabulate_pair(Joint *joint, int steps, Text *reason)
     for (int k = 0; k <= steps; k++) {
         const double xi = k * step, torque = smoothing * portable_sinh(xi);
         stiffness_with_play(&torque, joint->constants, K);
-        if (!(K[0] > MIN_STIFFNESS && K[0] < (1.0 - MIN_STIFFNESS_MARGIN) * constants[K_FTS0])) {
+        if (!(K[0] > MIN_DRIVE_STIFFNESS && K[0] < (1.0 - MIN_FLEXSPLINE_OVER_CONTACT_STIFFNESS) * constants[K_FTS0])) {
             stiffness_with_play(&constants[MAX_TORQUE], joint->constants, K);
             text_append_format(reason,
-                               "K_FTS0 = %g N.m/rad and the contact pair give K_WTS = %g N.m/rad, allowed is (%g, %g) "
-                               "N.m/rad with K_TS at most %g times K_FTS0",
-                               constants[K_FTS0], K[0], MIN_STIFFNESS, constants[K_FTS0], 1.0 / MIN_STIFFNESS_MARGIN);
+                               "K_WTS = %g N.m/rad of the contact pair (K_TS) in series with K_FTS0 = %g N.m/rad is "
+                               "outside (%g, %g) N.m/rad, or K_TS is above %g K_FTS0; check K_FTS0 and the contact "
+                               "pair",
+                               K[0], constants[K_FTS0], MIN_DRIVE_STIFFNESS, constants[K_FTS0],
+                               1.0 / MIN_FLEXSPLINE_OVER_CONTACT_STIFFNESS);
             return false;
         }
         const Node node = {.x = phi, .y = torque, .stiffness = K[0], .stiffness_slope = K[0] * K[1]};
@@ -97,7 +99,7 @@ static bool tabulate_midline(Joint *joint, Text *reason)
 bool tabulate_model(Joint *joint, Text *reason)
 {
     JointModel *model = &joint->model;
-    double constants[3], shares[2 * HYSTERESIS_SLIDERS], amplitudes[N_HARMONICS], stiffness;
+    double constants[3], shares[2 * HYSTERESIS_SLIDER_COUNT], amplitudes[N_HARMONICS], stiffness;
     *model = (JointModel){.has_periodic_terms = false};
     model->hysteresis.use_avx = model->friction.use_avx = has_avx();
     periodic_amplitudes(0, joint->constants, amplitudes);
@@ -120,7 +122,7 @@ static double solve_wind_up(const Joint *joint, const double *inputs, double err
     curve_argument(x, joint->constants, &curve_x);
     if (!ARGUMENT_IS_LOAD)
         return curve_x;
-    if (joint->model.hysteresis.is_active)
+    if (joint->model.hysteresis.has_friction)
         return hysteresis_solve_wind_up(&joint->model.hysteresis, &joint->curve, history, curve_x);
     return midline_wind_up(&joint->curve, curve_x);
 }
@@ -169,7 +171,7 @@ bool joint_evaluate(Joint *joint, const double *inputs, const double *history, d
     model->phi = solve_wind_up(joint, inputs, model->periodic[ERROR], history);
     memset(history_end, 0, N_HISTORY * sizeof *history_end);
     model->hysteresis_update = model->friction_update = (SliderResultant){.loss = 0.0};
-    if (model->hysteresis.is_active)
+    if (model->hysteresis.has_friction)
         model->hysteresis_update = hysteresis_advance(&model->hysteresis, history, model->phi, history_end);
     memcpy(x, inputs, N_INPUTS * sizeof(double));
     x[PHI] = model->phi;
@@ -177,7 +179,7 @@ bool joint_evaluate(Joint *joint, const double *inputs, const double *history, d
     x[HYSTERESIS_TORQUE] = model->hysteresis_update.force[0];
     x[PHI_ERROR] = model->periodic[ERROR];
     x[PHI_ERROR_SLOPE] = model->periodic[ERROR_SLOPE];
-    if (model->friction.is_active) {
+    if (model->friction.has_friction) {
         double friction_x[N_FRICTION_ARGUMENTS], y[4];
         set_friction_arguments(x, model->periodic[RIPPLE], friction_x);
         friction_arguments(friction_x, joint->constants, y);
@@ -210,7 +212,7 @@ void joint_derivative(Joint *joint, const double *inputs, const double *history,
     if (ARGUMENT_IS_LOAD)
         rate /= y[1] + model->hysteresis_update.tangent[0];
     const double loss_derivative =
-        model->hysteresis.is_active ? hysteresis_loss_derivative(&model->hysteresis, history, model->phi) : 0.0;
+        model->hysteresis.has_friction ? hysteresis_loss_derivative(&model->hysteresis, history, model->phi) : 0.0;
     const double hysteresis_rate = model->hysteresis_update.tangent[0] * rate,
                  loss = history[HISTORY_LOSS] + model->hysteresis_update.loss + model->friction_update.loss;
     const double values[] = {model->phi, y[0],     y[1],     model->hysteresis_update.force[0],
@@ -223,7 +225,7 @@ void joint_derivative(Joint *joint, const double *inputs, const double *history,
     _Static_assert(sizeof x_rates == sizeof values, "a rate for each value");
     memcpy(x + PHI, values, sizeof values);
     memcpy(x + N_OUTPUT_ARGUMENTS + PHI, x_rates, sizeof x_rates);
-    if (model->friction.is_active) {
+    if (model->friction.has_friction) {
         double friction_x[2 * N_FRICTION_ARGUMENTS], rates[4];
         set_friction_arguments(x, periodic[RIPPLE], friction_x);
         set_friction_arguments(x + N_OUTPUT_ARGUMENTS, periodic[RIPPLE_SLOPE] * seed[0],

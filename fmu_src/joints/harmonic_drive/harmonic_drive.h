@@ -15,11 +15,11 @@ void midline_torque(const Curve *curve, double phi, int order, double *y);
 double midline_wind_up(const Curve *curve, double torque);
 
 typedef struct {
-    bool is_active;                /* the drive has hysteresis */
+    bool has_friction;             /* the drive has hysteresis */
     bool use_avx;                  /* see simd.h */
     double limit_torque;           /* M_f, sum of the friction limits [N.m] */
     double characteristic_wind_up; /* M_f/K_h [rad] */
-    double K[HYSTERESIS_SLIDERS], compliance[HYSTERESIS_SLIDERS], limit[HYSTERESIS_SLIDERS];
+    double K[HYSTERESIS_SLIDER_COUNT], compliance[HYSTERESIS_SLIDER_COUNT], limit[HYSTERESIS_SLIDER_COUNT];
 } Hysteresis;
 
 /* Sliders from `hysteresis_constants`, `slider_shares` and the midline. false: refused, with the reason. */
@@ -34,9 +34,9 @@ double hysteresis_loss_derivative(const Hysteresis *hysteresis, const double *hi
 double hysteresis_solve_wind_up(const Hysteresis *hysteresis, const Curve *curve, const double *history, double torque);
 
 typedef struct {
-    bool is_active; /* the drive has dry friction */
-    bool use_avx;   /* see simd.h */
-    double K[FRICTION_SLIDERS], compliance[FRICTION_SLIDERS];
+    bool has_friction; /* the drive has dry friction */
+    bool use_avx;      /* see simd.h */
+    double K[FRICTION_SLIDER_COUNT], compliance[FRICTION_SLIDER_COUNT];
 } Friction;
 
 /* Angle [rad] and speed [rad/s] of the wave generator, and its limits [N.m] of positive and of negative friction; or

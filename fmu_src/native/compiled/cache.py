@@ -11,7 +11,7 @@ import tempfile
 from contextlib import suppress
 from pathlib import Path
 
-_REMOVED_PREFIX = "removed-"
+_REMOVED_FOLDER_PREFIX = "removed-"
 """Start of the names of folders that are being deleted."""
 _MAX_DELETION_WAIT = 1.0
 """Time [s] that `clear_cache` waits for the deletion of the files."""
@@ -33,7 +33,7 @@ def cache_folder() -> Path:
 
 
 def compiled_model_folder() -> Path:
-    """Folder of the compiled models."""
+    """Cache folder of the compiled models: C sources and libraries of FMUs."""
     return cache_folder() / "parts"
 
 
@@ -51,8 +51,8 @@ def compiler_cache_folder() -> Path:
     return Path(path).absolute() if path else cache_folder() / "zig"
 
 
-def check_cache_access(path: Path) -> None:
-    """Check owner and write access of a path in the cache and of its parents up to the cache folder.
+def check_cache_access(cached_path: Path) -> None:
+    """Check that no other user can write to a path in the cache, or to its parents up to the cache folder.
 
     A missing path, a path outside the cache, and any path on Windows pass.
 
@@ -62,7 +62,7 @@ def check_cache_access(path: Path) -> None:
     if sys.platform == "win32":
         return
     roots = {cache_folder(), compiler_cache_folder()}
-    ancestors = [path, *path.parents]
+    ancestors = [cached_path, *cached_path.parents]
     last = max((i for i, ancestor in enumerate(ancestors) if ancestor in roots), default=-1)
     for ancestor in ancestors[: last + 1]:
         try:
@@ -87,7 +87,7 @@ def make_cache_folder(cache_folder: Path) -> None:
 def count_cached_files() -> tuple[int, int]:
     """Number of files in the cache and their total size [bytes], without files that vanish meanwhile."""
     sizes = []
-    for folder, _, names in (entry for root in _cache_subfolders() for entry in os.walk(root)):
+    for folder, _, names in (entry for root in _list_cache_subfolders() for entry in os.walk(root)):
         for name in names:
             with suppress(FileNotFoundError):
                 sizes.append(os.stat(os.path.join(folder, name)).st_size)
@@ -101,14 +101,16 @@ def clear_cache() -> None:
 
     Raises ValueError if a folder cannot be renamed.
     """
-    for folder in _cache_subfolders():
+    for folder in _list_cache_subfolders():
         if not folder.exists():
             continue
         try:
-            folder.rename(tempfile.mkdtemp(prefix=_REMOVED_PREFIX, dir=folder.parent) + f"/{folder.name}")
+            folder.rename(
+                tempfile.mkdtemp(prefix=_REMOVED_FOLDER_PREFIX, dir=folder.parent) + f"/{folder.name}"
+            )
         except OSError as error:
-            raise ValueError(f"{folder}: cannot be removed ({error.strerror})") from None
-    removed = [str(path) for path in cache_folder().glob(f"{_REMOVED_PREFIX}*")]
+            raise ValueError(f"{folder}: cannot be removed ({error.strerror}); remove it by hand") from None
+    removed = [str(path) for path in cache_folder().glob(f"{_REMOVED_FOLDER_PREFIX}*")]
     if not removed:
         return
     program = "import shutil, sys; [shutil.rmtree(path, ignore_errors=True) for path in sys.argv[1:]]"
@@ -124,6 +126,6 @@ def clear_cache() -> None:
     deleting.returncode = 0  # it goes on by itself
 
 
-def _cache_subfolders() -> tuple[Path, ...]:
-    """Folders that jointfmu fills: compiled models, stored results, and the compiler's default cache."""
+def _list_cache_subfolders() -> tuple[Path, ...]:
+    """Cache folders of compiled models, of stored results and of the compiler (default folder)."""
     return compiled_model_folder(), stored_result_folder(), cache_folder() / "zig"

@@ -9,8 +9,8 @@ from conftest import Fmu, here_alone
 from jointfmu_fmu_src.building import build_fmus
 from jointfmu_tools import cli
 from jointfmu_tools.joints.bolted_joint.export import tabulate_normal_force
-from jointfmu_tools.joints.bolted_joint.fit.preload import joint_stiffness
-from jointfmu_tools.joints.bolted_joint.tensile_load import bolt_forces
+from jointfmu_tools.joints.bolted_joint.fit.preload import compute_joint_stiffness
+from jointfmu_tools.joints.bolted_joint.tensile_load import compute_bolt_forces
 from natives import jacobian
 
 from jointfmu.joints.bolted_joint import bolts as bolt_law
@@ -71,7 +71,7 @@ def file_of_sides(request):
 
 @pytest.fixture(scope="module", name="spring")
 def spring_of_sides(file):
-    return BoltedJointSpring.for_joint(file.values)
+    return BoltedJointSpring.from_joint(file.values)
 
 
 def at(spring, *six, memory=None, preload=PRELOAD, moment=0.0):
@@ -92,7 +92,7 @@ def forces_of_bolts(spring, out, six, preload=PRELOAD, moment=0.0):
 
 def without_bolts(spring):
     """Copy of the joint with zero bolt stiffness."""
-    return BoltedJointSpring.for_joint(replace(spring.joint, bolt_stiffness=0.0))
+    return BoltedJointSpring.from_joint(replace(spring.joint, bolt_stiffness=0.0))
 
 
 # The law
@@ -172,7 +172,7 @@ def test_no_bolt_pushes(spring, sweep):
 def test_a_lifted_bolt_has_no_stiffness():
     """Between rigid sides, the stiffness of a bolt is zero beyond lift-off, and half of the full one at
     lift-off."""
-    spring = BoltedJointSpring.for_joint(rigid_file().values)
+    spring = BoltedJointSpring.from_joint(rigid_file().values)
     free, six = without_bolts(spring), np.zeros(6)
     x, y = spring.bolts.position.T
     for part, expected in ((0.9, 1.0), (1.0, 0.5), (1.1, 0.0)):
@@ -185,7 +185,7 @@ def test_a_lifted_bolt_has_no_stiffness():
 
 def test_stiffness_is_that_of_the_forces_on_both_sides_of_lift_off(file):
     """The stiffness outputs agree with differences of the forces if all, some or no bolts are in tension."""
-    spring, seen = BoltedJointSpring.for_joint(file.values), set()
+    spring, seen = BoltedJointSpring.from_joint(file.values), set()
 
     for part in (0.5, 0.8, 1.6, 2.5):
         six = part * LIFT_OFF * MIXED
@@ -204,7 +204,7 @@ def test_a_closed_elastic_cycle_through_lift_off_has_no_work(file):
     The work is computed by Simpson's rule, whose error comes from the corners of the force. A bolt that lost
     its force at once would cause an error of 14.2 kN times a part of 47 um.
     """
-    spring, depth, lifted = BoltedJointSpring.for_joint(file.values), 1.3 * LIFT_OFF, False
+    spring, depth, lifted = BoltedJointSpring.from_joint(file.values), 1.3 * LIFT_OFF, False
     angle = np.linspace(0.0, 2.0 * np.pi, 401)
     way = np.zeros((angle.size, 6))
     way[:, 2] = -0.5 * depth * (1.0 - np.cos(angle))
@@ -320,7 +320,7 @@ def test_a_bolt_that_has_lifted_off_does_not_load_bent_plates(tmp_path):
     with here_alone():
         build_fmus(["BoltedJoint"], ["fmi3"], file, tmp_path)
     (path,) = tmp_path.rglob("BoltedJoint.fmu")
-    spring, preload = BoltedJointSpring.for_joint(file.values), EMBEDDING + 100.0
+    spring, preload = BoltedJointSpring.from_joint(file.values), EMBEDDING + 100.0
     place = np.array([0.0, 0.0, -5e-6, 2e-5, 4e-5, 0.0])
     instance = Fmu(path).start({"preload": preload})
 
@@ -346,7 +346,7 @@ def test_a_bolt_that_has_lifted_off_does_not_load_bent_plates(tmp_path):
     instance.free_instance()
 
     # 10 mm away, modal and rigid opening nearly cancel: forces of 1e9 N have a round-off
-    far = BoltedJointSpring.for_joint(replace(file.values, mu=0.15, bolt_stiffness=2.56e8))
+    far = BoltedJointSpring.from_joint(replace(file.values, mu=0.15, bolt_stiffness=2.56e8))
     out = at(far, 0.0, 0.0, -0.01, 0.0, 0.0, 0.0)[0]
     assert out["f_z"] == pytest.approx(0.01 * out["K_zz"], rel=0.1)
 
@@ -355,9 +355,9 @@ def test_a_bolt_that_has_lifted_off_does_not_load_bent_plates(tmp_path):
 
 
 def test_the_pull_curve_is_that_of_bolts_that_lift_off():
-    spring = BoltedJointSpring.for_interface_nodes(rigid_file(bolt_stiffness=2e10).values)
+    spring = BoltedJointSpring.from_interface_nodes(rigid_file(bolt_stiffness=2e10).values)
     table = tabulate_normal_force(spring, PRELOAD, 0.0, 1e-3)
-    s, force, k = table.rows.T
+    s, force, k = table.table_rows.T
     lift_off = (PRELOAD - EMBEDDING) / 2e10
     assert s[0] < -2.0 * lift_off
     for i in (0, 1, len(s) // 4, len(s) // 2, len(s) - 2):
@@ -369,16 +369,16 @@ def test_the_pull_curve_is_that_of_bolts_that_lift_off():
 def test_fits_over_preload_begin_with_bolts_at_lift_off():
     joint = rigid_file().values
     loads = np.array([0.0, EMBEDDING, PRELOAD])
-    spring = BoltedJointSpring.for_interface_nodes(joint)
+    spring = BoltedJointSpring.from_interface_nodes(joint)
     exact = [at(spring, *STILL, preload=load)[0]["K_zz"] for load in loads]
-    np.testing.assert_allclose(joint_stiffness(joint, loads), exact, rtol=1e-6)
+    np.testing.assert_allclose(compute_joint_stiffness(joint, loads), exact, rtol=1e-6)
 
 
 @pytest.mark.slow
 @needs("gmsh")
 def test_bolts_under_an_uneven_pull_have_no_negative_force(elastic_file):
-    spring = BoltedJointSpring.for_joint(elastic_file.values)
+    spring = BoltedJointSpring.from_joint(elastic_file.values)
     most = (PRELOAD - EMBEDDING) / np.max(-spring.bolts.force_per_moment)
-    found = bolt_forces(spring, PRELOAD, 1.2 * most, np.linspace(0.0, 1e4, 3))
+    found = compute_bolt_forces(spring, PRELOAD, 1.2 * most, np.linspace(0.0, 1e4, 3))
     assert len(found)
     assert np.min(found) >= 0.0

@@ -16,7 +16,7 @@ from clients import needs
 from conftest import Fmu
 from jointfmu_tools.cli import main
 from jointfmu_tools.fem.geometry import Plate
-from jointfmu_tools.systems.master import peak_frequency
+from jointfmu_tools.systems.master import find_peak_frequency
 from numpy.typing import NDArray
 from oracles import box_specimen as box
 from scipy.linalg import eigh
@@ -40,7 +40,7 @@ MASS = np.diag([100.0, 100.0, 100.0, 4.0, 3.0, 5.0])
 
 def all_nodes(preload: float, moment: float) -> Array:
     """Stiffness (6, 6) in full stick, summed over all nodes with the stiffness of the law."""
-    nodes = BoltedJointSpring.for_interface_nodes(JOINT)
+    nodes = BoltedJointSpring.from_interface_nodes(JOINT)
     shape = nodes.points
     k = (
         JOINT.A_0
@@ -100,7 +100,7 @@ def test_six_frequencies_of_a_block(native: Path, exchange: bool) -> None:
         omega = float(np.sqrt(square))
         step, size = 2.0 * np.pi / omega / 40.0, 1e-9 / float(np.max(np.abs(shape)))
         places = leapfrog(force_of(fmu), MASS, 0.0 * shape, omega * size * shape, step, 1600)
-        found = peak_frequency(places @ MASS @ shape, step)
+        found = find_peak_frequency(places @ MASS @ shape, step)
         assert 2.0 / step * np.sin(0.5 * found * step) == pytest.approx(omega, rel=2e-3)
         fmu.free_instance()
 
@@ -110,7 +110,7 @@ def test_frames_that_are_turned_about_the_normal(degrees: float) -> None:
     """A block that is pushed in a rotated frame has the rotated force, also in partial slip."""
     c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
     turned = np.array([[c, -s], [s, c]])
-    spring = BoltedJointSpring.for_joint(JOINT)
+    spring = BoltedJointSpring.from_joint(JOINT)
     rest = spring.initial_history()
 
     def shear(u: Array) -> Array:
@@ -254,7 +254,7 @@ def swings(first: float, least: float) -> Array:
     loading. Between two turning points the work is zero: q s = 2 I(s), I the integral of B. The force at the
     next turning point is q - 2 B(s). The series ends at a fraction `least` of the friction limit.
     """
-    nodes = BoltedJointSpring.for_interface_nodes(JOINT)
+    nodes = BoltedJointSpring.from_interface_nodes(JOINT)
     approach, law = nodes.preloaded_approach(PRELOAD, 0.0), nodes.friction_law.foundation()
     share, limit = nodes.points.area_share, JOINT.mu * PRELOAD * JOINT.n_bolts / JOINT.A_0
 

@@ -27,13 +27,13 @@ each_load = pytest.mark.parametrize(("preload", "moment"), LOADS)
 
 @pytest.fixture(scope="module")
 def spring():
-    return BoltedJointSpring.for_joint(JOINT)
+    return BoltedJointSpring.from_joint(JOINT)
 
 
 @pytest.fixture(scope="module")
 def elastic():
     """Joint without history, on all nodes."""
-    return BoltedJointSpring.for_interface_nodes(replace(JOINT, memory=False))
+    return BoltedJointSpring.from_interface_nodes(replace(JOINT, memory=False))
 
 
 def at(place, **inputs):
@@ -326,7 +326,7 @@ def test_elastic_joint_returns_its_energy(elastic):
 
 def test_elastic_joint_warns_beyond_its_friction():
     """Where the linear shear force would reach the limit, the traction t u/R is 1/sqrt 2 of it."""
-    spring = BoltedJointSpring.for_joint(replace(JOINT, memory=False))
+    spring = BoltedJointSpring.from_joint(replace(JOINT, memory=False))
     slips = {}
     for u in (5e-7, 2e-6):
         inputs = at(u * np.eye(6)[0])
@@ -339,7 +339,7 @@ def test_elastic_joint_warns_beyond_its_friction():
     assert text.startswith("slip = ")
     assert "the shear force exceeds the friction limit" in text
     assert "elastic" not in text
-    remembers = BoltedJointSpring.for_joint(JOINT)
+    remembers = BoltedJointSpring.from_joint(JOINT)
     assert not MODEL.find_warnings(remembers, inputs | MODEL.evaluate(remembers, inputs))
 
 
@@ -349,7 +349,7 @@ def test_elastic_joint_warns_beyond_its_friction():
 @each_load
 def test_without_turns_the_forces_are_those_of_all_nodes(spring, preload, moment):
     """The few points give the normal force of all nodes within 1e-5 of the bolt force."""
-    nodes = BoltedJointSpring.for_interface_nodes(JOINT)
+    nodes = BoltedJointSpring.from_interface_nodes(JOINT)
     for z in (-3e-6, -1e-6, 1e-6, 3e-6):
         few, all_ = (
             rest(s, np.array([0, 0, z, 0, 0, 0]), preload=preload, moment=moment) for s in (spring, nodes)
@@ -361,7 +361,7 @@ def test_without_turns_the_forces_are_those_of_all_nodes(spring, preload, moment
 @pytest.mark.parametrize("memory", [True, False])
 @each_load
 def test_the_stiffness_matrix_is_symmetric_and_holds_the_outputs(preload, moment, memory):
-    spring = BoltedJointSpring.for_joint(replace(JOINT, memory=memory))
+    spring = BoltedJointSpring.from_joint(replace(JOINT, memory=memory))
     loads = {"preload": preload, "moment": moment}
     # of SIZE, far from slip; the tilted joint has patches that open
     K = stiffness(spring, np.array([0, 0, 5e-7, 3e-6, 2e-6, 0]), 1e-6 * SIZE, **loads)
@@ -436,7 +436,7 @@ def test_tilt_turns_back_and_moment_alone_does_not_turn(spring):
 def test_a_turned_frame_gives_turned_forces(degrees, memory):
     """Without history the forces agree to round-off. The sliders are on circles that do not rotate: 2 % of a
     bolt's force, 6 % of the heat of first slip."""
-    spring = BoltedJointSpring.for_joint(replace(JOINT, memory=memory))
+    spring = BoltedJointSpring.from_joint(replace(JOINT, memory=memory))
     c, s = np.cos(np.deg2rad(degrees)), np.sin(np.deg2rad(degrees))
     R = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
     both = np.kron(np.eye(2), R)

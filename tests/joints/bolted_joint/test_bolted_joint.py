@@ -12,7 +12,7 @@ from jointfmu.contact.interface import evaluate_at_pressure
 from jointfmu.contact.laws import mindlin
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import BoltedJointParameters, preload_pressure
-from jointfmu.mechanics.curve import MAX_ERROR
+from jointfmu.mechanics.curve import MAX_INTERPOLATION_ERROR
 from jointfmu.mechanics.footprint.bolts import PressureDistribution
 from jointfmu.parameters import load_default
 from jointfmu.quantity import build_parameter_set, flatten_parameters
@@ -41,7 +41,7 @@ def changed(**values):
 
 @pytest.fixture(scope="module")
 def spring():
-    return BoltedJointSpring.for_interface_nodes(JOINT)
+    return BoltedJointSpring.from_interface_nodes(JOINT)
 
 
 @pytest.fixture(scope="module")
@@ -83,15 +83,15 @@ def test_outputs_are_named_as_promised(spring):
 
 
 def test_uniform_pressure_is_the_law(even):
-    """The sum over nodes is the law of the whole area at the mean pressure (MAX_ERROR of the table)."""
+    """The sum over nodes is the law of the whole area at the mean pressure, to MAX_INTERPOLATION_ERROR."""
     out = even.evaluate(9e3, 0.0, STILL, STILL)
     law = {name: float(value) for name, value in evaluate_at_pressure(JOINT, total(9e3) / JOINT.A_0).items()}
-    assert out["K_zz"] == pytest.approx(law["K_N"], rel=MAX_ERROR)
-    assert out["K_xx"] == out["K_yy"] == pytest.approx(law["K_T"], rel=MAX_ERROR)
-    assert out["eta_n"] == pytest.approx(law["eta_n"], rel=MAX_ERROR)
+    assert out["K_zz"] == pytest.approx(law["K_N"], rel=MAX_INTERPOLATION_ERROR)
+    assert out["K_xx"] == out["K_yy"] == pytest.approx(law["K_T"], rel=MAX_INTERPOLATION_ERROR)
+    assert out["eta_n"] == pytest.approx(law["eta_n"], rel=MAX_INTERPOLATION_ERROR)
     assert out["eta_t"] == pytest.approx(law["eta_t"], rel=4 * EPS)
-    assert out["C_zz"] == pytest.approx(law["C_N"], rel=2 * MAX_ERROR)
-    assert out["C_xx"] == out["C_yy"] == pytest.approx(law["C_T"], rel=2 * MAX_ERROR)
+    assert out["C_zz"] == pytest.approx(law["C_N"], rel=2 * MAX_INTERPOLATION_ERROR)
+    assert out["C_xx"] == out["C_yy"] == pytest.approx(law["C_T"], rel=2 * MAX_INTERPOLATION_ERROR)
     assert out["p_max"] == pytest.approx(out["p_mean"], rel=1e-13)  # round-off of the shares
 
 
@@ -104,8 +104,8 @@ def test_stiffness_is_the_sum_of_the_nodes_own_laws(spring, preload, moment):
     )  # outside the closing
     law = evaluate_at_pressure(JOINT, p)
     out = spring.evaluate(preload, moment, STILL, STILL)
-    assert out["K_zz"] == pytest.approx(spring.points.area_share @ law["K_N"], rel=MAX_ERROR)
-    assert out["K_xx"] == pytest.approx(spring.points.area_share @ law["K_T"], rel=MAX_ERROR)
+    assert out["K_zz"] == pytest.approx(spring.points.area_share @ law["K_N"], rel=MAX_INTERPOLATION_ERROR)
+    assert out["K_xx"] == pytest.approx(spring.points.area_share @ law["K_T"], rel=MAX_INTERPOLATION_ERROR)
 
 
 def test_uneven_pressure_is_softer_than_even(spring, even):
@@ -269,7 +269,7 @@ def test_loss_factors_and_damping(plastic, preload, moment):
     out = spring.evaluate(preload, moment, STILL, STILL)
     law = evaluate_at_pressure(JOINT, preload_pressure(JOINT, spring.points, preload, moment))
     plastic, elastic = (spring.points.area_share @ law[name] for name in ("W_NP", "W_NE"))
-    assert out["eta_n"] == pytest.approx(plastic / elastic, rel=MAX_ERROR)
+    assert out["eta_n"] == pytest.approx(plastic / elastic, rel=MAX_INTERPOLATION_ERROR)
     ratio = 12.0 * mindlin.dissipation_function(0.1) / (5.0 * np.pi * mindlin.storage_function(0.1))
     assert out["eta_t"] == pytest.approx(ratio / (1.0 - ratio), rel=1e-13)  # round-off
     assert out["eta_t"] == pytest.approx(2.0 * 0.1 / (9.0 * np.pi), rel=0.1)  # its limit for small x
@@ -323,9 +323,9 @@ def test_rotational_stiffness_about_the_centroid(spring, preload, moment):
     share = spring.points.area_share
     assert share @ x == pytest.approx(0.0, abs=1e-15)  # m, the origin is the centroid
     assert share @ y == pytest.approx(0.0, abs=1e-15)
-    assert out["K_rx"] == pytest.approx(share @ (law["K_N"] * y**2), rel=MAX_ERROR)
-    assert out["K_ry"] == pytest.approx(share @ (law["K_N"] * x**2), rel=MAX_ERROR)
-    assert out["K_rz"] == pytest.approx(share @ (law["K_T"] * (x**2 + y**2)), rel=MAX_ERROR)
+    assert out["K_rx"] == pytest.approx(share @ (law["K_N"] * y**2), rel=MAX_INTERPOLATION_ERROR)
+    assert out["K_ry"] == pytest.approx(share @ (law["K_N"] * x**2), rel=MAX_INTERPOLATION_ERROR)
+    assert out["K_rz"] == pytest.approx(share @ (law["K_T"] * (x**2 + y**2)), rel=MAX_INTERPOLATION_ERROR)
     assert out["K_rx"] > out["K_ry"]  # the frame is longer along y
 
 

@@ -15,8 +15,8 @@ from conftest import here_alone
 from joint_cases import RANGES, SAME, STATE, TABLE, parameters, random_inputs
 from jointfmu_fmu_src.building import build_fmus
 from jointfmu_tools.joints.bolted_joint.field import PlaneLayout
-from jointfmu_tools.joints.bolted_joint.picture import CELL_OVERLAP, _cell_sizes, draw_plan
-from jointfmu_tools.joints.bolted_joint.report import picture_figure
+from jointfmu_tools.joints.bolted_joint.picture import AREA_CELL_OVERLAP, _area_cell_sizes, draw_plan
+from jointfmu_tools.joints.bolted_joint.report import make_plan_and_section_figure
 from jointfmu_tools.pages.laboratory.describe import list_modules
 from jointfmu_tools.pages.report.load_history import LoadHistory
 from jointfmu_tools.run.ramps import ramp
@@ -38,7 +38,7 @@ MOVED = ("s_rel_x", "s_rel_y", "s_rel_z", "theta_x", "theta_y", "theta_z")
 
 def test_bolted_joint_at_rest_follows_the_law_without_a_table(fmu: Host) -> None:
     joint, instance = parameters("BoltedJoint"), fmu("BoltedJoint").start()
-    spring = BoltedJointSpring.for_joint(joint)
+    spring = BoltedJointSpring.from_joint(joint)
     for preload, moment in ((5e3, 0.0), (9e3, 600.0), (2e4, -1500.0)):
         found = instance.at({"preload": preload, "moment": moment})
         node = preload_pressure(joint, spring.points, preload, moment)
@@ -122,12 +122,12 @@ def relative(found: Any, expected: Any) -> float:
 
 def test_the_preload_ramp_agrees_with_scipy(native: Path) -> None:
     path = native / "fmi3" / "BoltedJoint.fmu"
-    c = ramp.run_ramp(path, "preload", 3e4, 100.0).columns
+    c = ramp.run_ramp(path, "preload", 3e4, 100.0).variable_columns
     assert len(c["preload"]) == 301
     assert np.all(np.diff(c["K_zz"]) > 0.0)
     assert not np.any([c["f_x"], c["f_y"], c["f_z"]])
     assert relative(c["p_mean"], c["preload"] * 8.0 / 0.0382) < 1e-9  # equilibrium, 8 bolts on A_0
-    pulled = ramp.run_ramp(path, "s_rel_z", 5e-6, 1e-8, {"preload": 9e3}).columns
+    pulled = ramp.run_ramp(path, "s_rel_z", 5e-6, 1e-8, {"preload": 9e3}).variable_columns
     force = -cumulative_simpson(pulled["K_zz"], x=pulled["s_rel_z"], initial=0.0)
     assert relative(pulled["f_z"], force) < 1e-6  # Simpson's rule at 500 steps
 
@@ -306,11 +306,11 @@ COMPILED = 1e-9
 @pytest.mark.parametrize("law", ["zhao2018", "roughness"])
 def test_the_map_is_the_pressure_at_the_points(law):
     module = next(
-        m for m in list_modules() if m.model.name == "BoltedJoint" and m.parameter_files[0].law == law
+        m for m in list_modules() if m.fmu_model.name == "BoltedJoint" and m.parameter_files[0].law == law
     )
     joint = module.parameter_files[0].values
     shape = contact_points(joint.pattern)
-    spring = BoltedJointSpring.for_interface_nodes(joint, shape)
+    spring = BoltedJointSpring.from_interface_nodes(joint, shape)
     instance = Instance(module, module.compile_module())
     for moment, apart, turn in ((0.0, 0.0, 0.0), (1500.0, 2e-7, 1e-6)):
         given = {"preload": 12e3, "moment": moment, "s_rel_z": apart, "theta_x": turn, "theta_y": -turn}
@@ -341,15 +341,15 @@ def test_loops_show_partial_slip_whatever_the_friction(mu: float) -> None:
     file = load_default("bolted_joint").with_values({"mu": mu, "memory": True}, "user", "friction")
     model = MODELS["BoltedJoint"]
     course = LoadHistory(model, file)
-    small, *_, large = course.compute_loops().compute_loop_results()
+    small, *_, large = course.compute_loops().compute_quantities_of_loops()
     point = {**course.loop_inputs, "s_rel_x": 0.0}
-    stiff = model.evaluate(course.spring, point)["K_xx"]
+    stiff = model.evaluate(course.tabulated_joint, point)["K_xx"]
     assert small["secant_stiffness"] > 0.25 * stiff
     assert large["force"] <= mu * course.loop_inputs["preload"] * file.values_by_name["n_bolts"] * (
         1.0 + 1e-9
     )
     if mu < 0.1:
-        assert large["motion"] < 0.5 * model.load_cycle.amplitude
+        assert large["motion"] < 0.5 * model.load_cycle.input_amplitude
         # slides freely over more than a third of the way back
         assert large["loss_factor"] > 0.7
 
@@ -360,7 +360,7 @@ def test_the_picture_shows_pressure_and_bolts_where_they_are() -> None:
     shape = joint.pattern.pressure_distribution()
     drawn = ElementTree.fromstring(draw_plan(joint, 9e3, 0.0))
     cells = [rect for rect in drawn.iter(f"{SVG}rect") if rect.get("fill") not in ("#fff", "none", None)]
-    sides = [[float(rect.get(side)) - CELL_OVERLAP for side in ("width", "height")] for rect in cells]
+    sides = [[float(rect.get(side)) - AREA_CELL_OVERLAP for side in ("width", "height")] for rect in cells]
     area = np.sum(np.prod(sides[: len(shape.area_share)], axis=1))
     outer = next(rect for rect in drawn.iter(f"{SVG}rect") if rect.get("fill") == "none")
     scale = float(outer.get("width")) / (joint.pattern.column_spacing + joint.pattern.flange_width)
@@ -369,14 +369,14 @@ def test_the_picture_shows_pressure_and_bolts_where_they_are() -> None:
         np.array([float(rect.get("x")), float(rect.get("y"))]) for rect in cells if rect.get("fill") == YELLOW
     ]
     holes = {(float(c.get("cx")), float(c.get("cy"))) for c in drawn.iter(f"{SVG}circle")}
-    assert len(holes) == len(joint.pattern.bolts_from_middle)
+    assert len(holes) == len(joint.pattern.bolt_positions_from_middle)
     assert min(np.hypot(x - a, y - b) for a, b in holes) < scale * joint.pattern.hole_diameter
     told = [text.text for text in drawn.iter(f"{SVG}text")]
     assert [text for text in told if text and text.isdigit()][:8] == [str(i + 1) for i in range(8)]
     strip = BoltedPlate(
         length=0.15, width=0.04, x=(0.0,), y=(0.0,), hole_diameter=0.009, cone_diameter=0.02
     )  # its cells are no squares: they are as wide as its columns
-    sides = _cell_sizes(
+    sides = _area_cell_sizes(
         SimpleNamespace(A_0=strip.area, pattern=strip), strip.pressure_distribution().area_share
     )
     np.testing.assert_allclose(
@@ -408,7 +408,7 @@ def test_the_picture_of_points_without_an_outline() -> None:
     told = [text.text for text in drawn.iter(f"{SVG}text")]
     wide = 1e3 * np.ptp(moved.position[:, 0])
     assert f"points over {wide:.4g} mm, x to the right" in told
-    assert len(PlaneLayout.from_joint(joint).bolt_positions) == 0
-    figure = picture_figure(LoadHistory(MODELS["BoltedJoint"], replace(file, values=joint)))
-    assert "no bolt positions" in figure.text
-    assert len(figure.pictures) == 1
+    assert len(PlaneLayout.from_joint_parameters(joint).bolt_positions) == 0
+    figure = make_plan_and_section_figure(LoadHistory(MODELS["BoltedJoint"], replace(file, values=joint)))
+    assert "no bolt positions" in figure.description
+    assert len(figure.svg_pictures) == 1

@@ -21,16 +21,16 @@ from jointfmu_tools.inputs.drawing.tables import (
     read_tightening_methods,
     read_washers,
 )
-from jointfmu_tools.joints.bolted_joint.gross_slip import friction_results, preload_results
+from jointfmu_tools.joints.bolted_joint.gross_slip import compute_friction_results, compute_preload_results
 from jointfmu_tools.joints.bolted_joint.new import (
     NEW_JOINT_COMMAND,
-    STANDARD_WASHERS,
+    STANDARD_WASHER_OPTION,
     TIGHTENING_METHODS,
     layout,
 )
 from jointfmu_tools.joints.bolted_joint.new.plate import read_drawing
-from jointfmu_tools.joints.bolted_joint.report import preload_figures
-from jointfmu_tools.studies.uncertainty.problem import resolve_interval, state_problem
+from jointfmu_tools.joints.bolted_joint.report import make_preload_figures
+from jointfmu_tools.studies.uncertainty.problem import define_joint_study, resolve_interval_setting
 
 import jointfmu
 from jointfmu.contact.roughness import PERSSON_GAMMA, RQ_OVER_RA
@@ -128,7 +128,7 @@ def test_a_bolt_by_hand():
     Lengths: 6 + 19.35 mm with the nominal area, 20.65 + 6 mm with d_3, 4.8 mm in the nut.
     """
     M12 = read_threads()["M12"]
-    shank = vdi2230.shank_length(M12, 0.04, "hexagon", is_tapped=False)
+    shank = vdi2230.unthreaded_shank_length(M12, 0.04, "hexagon", is_tapped=False)
     assert shank == pytest.approx(40e-3 + 9.6e-3 + 3.5e-3 - 30e-3)
     nominal, minor = 0.25 * math.pi * 12e-3**2, 0.25 * math.pi * 9.853e-3**2
     expected = ((6e-3 + shank + 4.8e-3) / nominal + (40e-3 - shank + 6e-3) / minor) / 205e9
@@ -170,7 +170,7 @@ def test_embedding_takes_of_the_preload(capsys):
 
 
 def preload_of(torque, thread, mu_G, mu_K):
-    diameter = vdi2230.head_friction_diameter(thread.hexagon, thread.hole)
+    diameter = vdi2230.head_friction_diameter(thread.hexagon_bearing_diameter, thread.hole_diameter)
     arms = vdi2230.torque_per_preload(thread.pitch, vdi2230.pitch_diameter(thread), diameter, mu_G, mu_K)
     return torque / arms
 
@@ -227,7 +227,7 @@ def test_a_torque_gives_a_preload_with_its_range(capsys, tmp_path):
     for name in ("K_zz", "K_xx", "opening_load"):
         assert facts[f"{name}_at_low_preload"] < facts[f"{name}_at_high_preload"]
     # the stiffness is that of the FMU, the interface opens at the preload of all bolts and what they add
-    spring = BoltedJointSpring.for_joint(file.values)
+    spring = BoltedJointSpring.from_joint(file.values)
     K = spring.evaluate(low, 0.0, STILL, STILL)["K_zz"]
     assert facts["K_zz_at_low_preload"] == pytest.approx(float(K), rel=1e-6)
     assert facts["opening_load_at_low_preload"] == pytest.approx(4.0 * (low - left), rel=0.05)
@@ -288,8 +288,8 @@ def test_the_yield_strength_limits_the_torque(capsys):
 
 def test_fine_threads(capsys):
     count, thread = layout.parse_bolts("4xM12x1.25")
-    assert (count, thread.name, thread.pitch) == (4, "M12x1.25", pytest.approx(1.25e-3))
-    assert thread.hexagon == read_threads()["M12"].hexagon
+    assert (count, thread.thread_name, thread.pitch) == (4, "M12x1.25", pytest.approx(1.25e-3))
+    assert thread.hexagon_bearing_diameter == read_threads()["M12"].hexagon_bearing_diameter
     assert layout.parse_bolts("M12x1.75")[1] is read_threads()["M12"]
     with pytest.raises(
         ValueError, match=r"thread M12x1 is unknown, allowed pitches of M12 are 1.75, 1.5, 1.25 mm"
@@ -305,26 +305,26 @@ def test_a_preload_range_reaches_report_and_study(capsys, tmp_path):
     facts = facts_of(capsys, *PLATE, *FACES, *TORQUE, *KNOWN)
     made(capsys, *PLATE, *FACES, *TORQUE, *KNOWN, path=path)
     file = load_parameter_file(path)
-    rows = {row.preload: row for row in preload_results(file)}
+    rows = {row.preload: row for row in compute_preload_results(file)}
     assert len(rows) == 3
     history = SimpleNamespace(file=file)
-    (figure,) = preload_figures(history)
-    assert len(figure.table) == 4
-    assert "torque wrench" in figure.text
-    study = state_problem(file, {}, None, 3)
+    (figure,) = make_preload_figures(history)
+    assert len(figure.table_rows) == 4
+    assert "torque wrench" in figure.description
+    study = define_joint_study(file, {}, None, 3)
     load = study.uncertain_parameters[-1]
     left = facts["embedding"]  # the load of a study is what embedding leaves
-    assert (load.name, load.support) == (
+    assert (load.name, load.support_interval) == (
         "preload", pytest.approx((facts["preload_low"] - left, facts["preload_high"] - left)),
     )  # fmt: skip
-    assert "opening_load" in study.units
+    assert "opening_load" in study.output_units
     low, high = file.ranges["inputs.preload"]  # of an FMU, whose input is what is tightened
-    assert resolve_interval("preload", "interval", file) == f"{low!r}..{high!r}"
+    assert resolve_interval_setting("preload", "interval", file) == f"{low!r}..{high!r}"
     # a stated ramp takes the place of the range
-    assert [each.name for each in state_problem(file, {}, 30e3, 3).uncertain_parameters] == ["mu"]
+    assert [each.name for each in define_joint_study(file, {}, 30e3, 3).uncertain_parameters] == ["mu"]
     bare = replace(file, ranges={"inputs.preload": (1e3, 50e3)})
-    with pytest.raises(ValueError, match="the joint loses all of it"):
-        state_problem(bare, {}, None, 3)
+    with pytest.raises(ValueError, match="the joint may lose all of it"):
+        define_joint_study(bare, {}, None, 3)
 
 
 # Washers
@@ -341,7 +341,7 @@ def test_load_factor_of_a_published_analysis(capsys):
     found = facts_of(capsys, *ANALYSED, "--washers", "16x1.5")
     assert found["load_factor"] == pytest.approx(0.181, rel=0.01)
     thread = read_threads()["M8"]
-    shank = vdi2230.shank_length(thread, 14.5e-3, "hexagon", is_tapped=False)
+    shank = vdi2230.unthreaded_shank_length(thread, 14.5e-3, "hexagon", is_tapped=False)
     bolt = 1.0 / vdi2230.bolt_compliance(thread, 14.5e-3, shank, "hexagon")
     assert bolt == pytest.approx(3.001e8, rel=0.02)  # with one washer, as in the analysis
 
@@ -364,7 +364,7 @@ def test_washers_are_clamped_parts_with_the_cone_of_the_head(capsys):
     delta_P = vdi2230.members_compliance(layers, 16.63e-3, 0.013, 0.04, slope, is_tapped=False)
     assert 1.0 / found["member_stiffness"] == pytest.approx(delta_P, rel=1e-9)
     thread = read_threads()["M12"]
-    shank = vdi2230.shank_length(thread, 0.045, "hexagon", is_tapped=False)
+    shank = vdi2230.unthreaded_shank_length(thread, 0.045, "hexagon", is_tapped=False)
     delta_S = vdi2230.bolt_compliance(thread, 0.045, shank, "hexagon")
     assert found["load_factor"] == pytest.approx(delta_P / (delta_S + delta_P), rel=1e-9)
     series = delta_S + 1.0 / found["washer_stiffness"]
@@ -389,12 +389,12 @@ def test_a_washer_limits_the_cone(capsys):
 
 def test_finite_elements_and_file_have_the_washers(capsys, tmp_path):
     """The bearing face is the cone below the washer, at most D; the washers are in series with the bolt."""
-    drawing = dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.options)
+    drawing = dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.command_options)
     drawing |= {"plate": "200x100", "bolts": "4xM12", "at": ["160x60"], "grip": ["40"]}
     drawing |= {"material": ["steel"], "Ra": ["0.8"], "preload": "30e3"}
     seats = [
-        read_drawing(drawing | {"washers": washers}).plates.bearing_diameter
-        for washers in (None, STANDARD_WASHERS, "18x2.5")
+        read_drawing(drawing | {"washers": washers}).bolted_plates.bearing_diameter
+        for washers in (None, STANDARD_WASHER_OPTION, "18x2.5")
     ]
     slope = vdi2230.cone_slope(0.045, 16.63e-3, 0.04, is_tapped=False)
     assert seats == pytest.approx([16.63e-3, 16.63e-3 + 2.0 * 2.5e-3 * slope, 18e-3])
@@ -485,7 +485,12 @@ def test_numbers_of_the_drawing_are_in_the_file(capsys, tmp_path):
     file = load_parameter_file(path)
     joint, plate = file.values, file.values.pattern
     assert (plate.length, plate.width, plate.hole_diameter) == (0.2, 0.1, 0.0135)
-    assert plate.bolts_from_middle.tolist() == [[-0.08, -0.03], [0.08, -0.03], [-0.08, 0.03], [0.08, 0.03]]
+    assert plate.bolt_positions_from_middle.tolist() == [
+        [-0.08, -0.03],
+        [0.08, -0.03],
+        [-0.08, 0.03],
+        [0.08, 0.03],
+    ]
     assert (joint.n_bolts, joint.row_bolts, joint.row_distance) == pytest.approx((4.0, 2.0, 0.06))
     assert pytest.approx(0.2 * 0.1 - 4 * math.pi / 4 * 0.0135**2) == joint.A_0
     assert joint.h == pytest.approx(RQ_OVER_RA * 0.8e-6 * math.sqrt(2.0))
@@ -602,7 +607,7 @@ def test_rz_gives_ra_with_its_scatter(capsys, tmp_path):
     assert found["embedding"]["value"] == pytest.approx(known["embedding"])
     depth = known["embedding"] * (1.0 / known["bolt_stiffness"] + 1.0 / known["member_stiffness"])
     assert depth == pytest.approx(9.5e-6)
-    assert {each.name for each in state_problem(file, {}, 30e3, 3).uncertain_parameters} == {"mu", "h"}
+    assert {each.name for each in define_joint_study(file, {}, 30e3, 3).uncertain_parameters} == {"mu", "h"}
 
 
 def test_stated_ranges_are_in_the_file(capsys, tmp_path):
@@ -627,36 +632,36 @@ def test_stated_ranges_are_in_the_file(capsys, tmp_path):
     [
         (["--plate", "200"], "--plate = '200' has 1 numbers, expected 2, as in 200x100"),
         (["--plate", "200xabc"], "--plate = 'abc' is not a number; expected a number in mm"),
-        (["--plate", "200Nx100"], "--plate = '200N': unit 'm' does not measure what 'N' does"),
+        (["--plate", "200Nx100"], "--plate = '200N': unit 'N' measures another quantity than 'm'"),
         (["--plate", "-200x100"], "--plate = '-200' is outside (0, inf)"),
         (["--bolts", "four"], "--bolts = 'four' are no bolts; expected a number and a thread, as in 4xM12"),
         (["--bolts", "4xM13"], "thread M13 is unknown, allowed are M3, M4"),
         (["--bolts", "0xM12"], "--bolts = '0xM12' are no bolts"),
-        (["--bolts", "5xM12"], "5 bolts on a rectangle: expected --grid"),
+        (["--bolts", "5xM12"], "5 bolts fit --at LxW in several ways; state --grid"),
         (["--bolts", "M12"], "--at LxW for one bolt: expected the number of --bolts, as in 4xM12"),
         (["--mu", "15"], "--mu = '15' is outside (0, 2]: coefficient of friction of metals"),
         (["--at", "220x60"], "bolt 1 at (-110, -30) mm is not inside the plate"),
         (["--at", "190x60"], "is not inside the plate; allowed are |x| < 0.09325 m"),
         (["--at", "10x60"], "the holes of bolts 1 and 2 overlap"),
-        (["--at", "0,0", "10,10"], "--at has 2 places, expected 4: one for each of --bolts"),
-        (["--at", "160x60", "80x30"], "expected one LxW, or the place X,Y of each bolt"),
+        (["--at", "0,0", "10,10"], "--at has 2 positions, expected 4: one for each of --bolts"),
+        (["--at", "160x60", "80x30"], "expected one LxW, or the position X,Y of each bolt"),
         (["--grid", "3x2"], "--grid = 3x2 has 6 bolts, but --bolts states 4"),
         (["--grid", "2"], "--grid = '2' is not a grid"),
         (["--circle", "80"], "--at with --circle: expected one of them"),
         (["--grip", "0"], "--grip = '0' is outside (0, inf)"),
         (["--grip", "1", "2", "3"], "--grip has 3 values, expected both plates together, or each"),
         (["--tapped", "--grip", "10", "30"], "--grip has 2 values, expected that of side 1"),
-        (["--hole", "11"], "--hole = 11 mm is outside (12, 36] mm of M12"),
+        (["--hole", "11"], "--hole = 11 mm is outside (12, 36] mm for M12"),
         (
             ["--hole", "13500"],
             "--hole = '13500' is read as 13500 mm, plausible are 2 to 150 mm; if it is in um",
         ),
-        (["--bearing", "120"], "--bearing = 120 mm is outside (13.5, 96] mm of M12"),
+        (["--bearing", "120"], "--bearing = 120 mm is outside (13.5, 96] mm for M12"),
         (["--plate", "0.2x0.15", "--at", "0.16x0.11"], "if it is in m, write 0.2m (200 mm)"),
         (["--at", "160,5x60"], "has x and comma; write LxW with decimal points"),
-        (["--bearing", "13"], "--bearing = 13 mm is outside (13.5, 96] mm of M12"),
-        (["--washers", "16x2.5"], "--washers: outer diameter = 16 mm is outside (16.63, 96] mm of M12"),
-        (["--washers", "24x13"], "--washers: thickness = 13 mm is outside (0, 12] mm of M12"),
+        (["--bearing", "13"], "--bearing = 13 mm is outside (13.5, 96] mm for M12"),
+        (["--washers", "16x2.5"], "--washers: outer diameter = 16 mm is outside (16.63, 96] mm for M12"),
+        (["--washers", "24x13"], "--washers: thickness = 13 mm is outside (0, 12] mm for M12"),
         (
             ["--washers", "62x4"],
             "outer diameter = 62 mm is outside (0, 60] mm: washers of neighbouring bolts",
@@ -667,16 +672,16 @@ def test_stated_ranges_are_in_the_file(capsys, tmp_path):
         (["--preload", "-1"], "--preload = '-1' is outside (0, inf)"),
         (["--torque", "84", "--preload", "43e3"], "--torque with --preload: state one of them"),
         (["--head-friction", "0.1"], "--head-friction has no effect without --torque"),
-        (["--torque", "84kN"], "--torque = '84kN': unit 'N.m' does not measure what 'kN' does"),
+        (["--torque", "84kN"], "--torque = '84kN': unit 'kN' measures another quantity than 'N.m'"),
         (["--bolts", "4xM12x1"], "allowed pitches of M12 are 1.75, 1.5, 1.25 mm"),
         (["--preload", "nan"], "--preload = 'nan' is not a number"),
-        (["--preload", "2kN"], "embedding takes 2643 N of a preload of 2000 N: expected less than all"),
+        (["--preload", "2kN"], "embedding takes 2643 N, the whole preload of 2000 N"),
         (["--embedding", "-1"], "--embedding = '-1' is outside [0, inf) N: preload loss of a bolt"),
         (["--material", "unobtainium"], "material 'unobtainium' is unknown, allowed are steel,"),
         (["--material", "steel", "steel", "steel"], "--material has 3 values"),
         (["--Rq", "1"], "--Ra and --Rq are given together; state the roughness once"),
         (["--finish", "licked"], "finish 'licked' is unknown, allowed are turned,"),
-        (["--tapped", "--field", "computed"], "--tapped: expected --thickness of both plates for it"),
+        (["--tapped", "--field", "computed"], "--tapped needs the thickness of both plates"),
         (["--law", "hu2023"], "invalid choice: 'hu2023'"),
     ],
 )
@@ -700,7 +705,7 @@ def test_a_roughness_must_be_stated(capsys):
 
 def test_places_must_be_stated(capsys):
     words = ["--plate", "200x100", "--bolts", "4xM12", "--grip", "40", *FACES]
-    assert "the places of 4 bolts are missing" in refused_line(capsys, "new", "bolted-joint", *words)
+    assert "the positions of 4 bolts are missing" in refused_line(capsys, "new", "bolted-joint", *words)
 
 
 def test_a_preload_no_bolt_bears_is_warned_of(capsys):
@@ -730,7 +735,7 @@ def test_the_fmu_of_a_drawing_is_the_package(capsys, tmp_path):
     with here_alone():
         assert cli.main(command) == 0
     instance = Fmu(tmp_path / "fmi2" / "BoltedJoint.fmu")
-    spring = BoltedJointSpring.for_joint(load_parameter_file(path).values)
+    spring = BoltedJointSpring.from_joint(load_parameter_file(path).values)
     for preload, moment, s_rel in (
         (3e4, 0.0, STILL),
         (2e4, 300.0, (1e-7, -2e-7, 3e-7)),
@@ -756,7 +761,7 @@ def test_a_computed_field_is_near_the_cones(capsys, tmp_path, enter):
         path = tmp_path / f"{field}.toml"
         words = ["--plate", "60x60", "--bolts", "M16", "--grip", "30", *FACES, "--preload", "60e3"]
         made(capsys, *words, "--field", field, path=path)
-        files[field] = BoltedJointSpring.for_joint(load_parameter_file(path).values).evaluate(
+        files[field] = BoltedJointSpring.from_joint(load_parameter_file(path).values).evaluate(
             6e4, 0.0, STILL, STILL
         )
     for name, within in (
@@ -813,14 +818,22 @@ def test_friction_of_which_nothing_is_said_has_a_range(capsys, tmp_path):
     assert ratio == pytest.approx(high / low, rel=0.1)
     assert facts["loss_factor_high"] < facts["loss_factor"] < facts["loss_factor_low"]
     bare = replace(file, values=replace(file.values, embedding=0.0))  # embedding takes of the preload once
-    np.testing.assert_allclose(friction_results(file, 30e3)[1], friction_results(bare, left)[1], rtol=1e-9)
-    (mu,) = (each for each in list_parameter_file_entries(file) if each.name == "mu")
-    assert mu.source.startswith(f"{low:g} to {high:g}; ")
-    study = state_problem(file, {}, 30e3, 3)
-    assert [(each.name, each.support) for each in study.uncertain_parameters] == [("mu", (low, high))]
-    assert state_problem(file, {"mu": "interval"}, 30e3, 3).uncertain_parameters[0].support == (low, high)
+    np.testing.assert_allclose(
+        compute_friction_results(file, 30e3)[1], compute_friction_results(bare, left)[1], rtol=1e-9
+    )
+    (mu,) = (each for each in list_parameter_file_entries(file) if each.entry_name == "mu")
+    assert mu.value_source.startswith(f"{low:g} to {high:g}; ")
+    study = define_joint_study(file, {}, 30e3, 3)
+    assert [(each.name, each.support_interval) for each in study.uncertain_parameters] == [
+        ("mu", (low, high))
+    ]
+    assert define_joint_study(file, {"mu": "interval"}, 30e3, 3).uncertain_parameters[0].support_interval == (
+        low,
+        high,
+    )
     assert "mu" not in {
-        each.name for each in state_problem(file, {"mu": 0.2, "h": "+-10%"}, 30e3, 3).uncertain_parameters
+        each.name
+        for each in define_joint_study(file, {"mu": 0.2, "h": "+-10%"}, 30e3, 3).uncertain_parameters
     }
     assert not file.with_values({"mu": 0.2}, "user", "set").ranges
 

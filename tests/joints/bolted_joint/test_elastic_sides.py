@@ -16,16 +16,16 @@ from jointfmu_fmu_src.native import page
 from jointfmu_tools import cli
 from jointfmu_tools.common.shown import format_quantity
 from jointfmu_tools.fem.whole_joint import JointFiniteElements
-from jointfmu_tools.inputs.fields.joint_parameters import insert_field
-from jointfmu_tools.inputs.fields.nodal_result import ContactField
+from jointfmu_tools.inputs.fields.joint_parameters import insert_pressure_field
+from jointfmu_tools.inputs.fields.nodal_result import ContactPressureField
 from jointfmu_tools.inputs.fitting import branches
 from jointfmu_tools.joints.bolted_joint import report
 from jointfmu_tools.joints.bolted_joint.fit import loop
 from jointfmu_tools.joints.bolted_joint.fit import preload as over_preload
-from jointfmu_tools.joints.bolted_joint.tensile_load import bolt_forces
+from jointfmu_tools.joints.bolted_joint.tensile_load import compute_bolt_forces
 from jointfmu_tools.pages.report.load_history import LoadHistory
 from jointfmu_tools.studies.uncertainty import propagate
-from jointfmu_tools.studies.uncertainty.problem import state_problem
+from jointfmu_tools.studies.uncertainty.problem import define_joint_study
 from oracles.joint_elements import pole_deviations
 
 from jointfmu.joints import KINDS
@@ -59,8 +59,8 @@ def made(tmp_path_factory):
                 stated = [*words, "--embedding", "0", "--preload", str(preload), "--out", str(path)]
                 assert cli.main(["new", "bolted-joint", *stated, "--json"]) == 0
             file = load_parameter_file(path)
-            spring = BoltedJointSpring.for_joint(file.values)
-            found[words] = SimpleNamespace(path=path, file=file, spring=spring, fe=seen[-1].compliances)
+            spring = BoltedJointSpring.from_joint(file.values)
+            found[words] = SimpleNamespace(path=path, file=file, spring=spring, fe=seen[-1].joint_compliances)
         return found[words]
 
     return make
@@ -70,7 +70,7 @@ def embedded(joint, path):
     """Parameter file of the same joint with 800 N embedding loss per bolt."""
     file = joint.file.with_values({"embedding": 800.0}, "user", "test")
     path.write_text(format_parameter_file(file))
-    return SimpleNamespace(path=path, file=file, spring=BoltedJointSpring.for_joint(file.values))
+    return SimpleNamespace(path=path, file=file, spring=BoltedJointSpring.from_joint(file.values))
 
 
 def at(spring, *six, memory=None, preload=PRELOAD, moment=0.0):
@@ -125,30 +125,42 @@ def test_the_report_states_the_whole_beside_its_parts(made):
     np.testing.assert_allclose(found.bolt_force[:, 2], fe.bolt_force[:, 2], rtol=0.05)
 
     model = KINDS[joint.file.joint].models[0]
-    picture, figure, friction = report.joint_figures(LoadHistory(model, joint.file))
-    assert "side 1: 10 mm" in picture.pictures[1]
-    assert "the load enters at the outer faces" in picture.pictures[1]
-    assert [row[0] for row in friction.table[1:]] == ["0.1", "0.15", "0.3"]
-    assert [row[0] for row in figure.table[1:]] == list(AXES)
-    assert f"{1e-9 / found.total_compliance[2]:.4g} kN/µm" in figure.table[3]
-    (panel,) = figure.panels
-    for series in panel.series:  # from its preload, slowly, then with all of the load
-        assert series.y[0] == pytest.approx(15.0)
-        assert series.y[-1] > 1.1 * 15.0
-    counts = [series.name.count("F_bolt") for series in panel.series]  # equal bolts share a curve
+    picture, figure, friction = report.make_bolted_joint_figures(LoadHistory(model, joint.file))
+    assert "side 1: 10 mm" in picture.svg_pictures[1]
+    assert "the load enters at the outer faces" in picture.svg_pictures[1]
+    assert [row[0] for row in friction.table_rows[1:]] == ["0.1", "0.15", "0.3"]
+    assert [row[0] for row in figure.table_rows[1:]] == list(AXES)
+    assert f"{1e-9 / found.total_compliance[2]:.4g} kN/µm" in figure.table_rows[3]
+    (panel,) = figure.plot_panels
+    for series in panel.chart_series:  # from its preload, slowly, then with all of the load
+        assert series.y_values[0] == pytest.approx(15.0)
+        assert series.y_values[-1] > 1.1 * 15.0
+    counts = [
+        series.series_name.count("F_bolt") for series in panel.chart_series
+    ]  # equal bolts share a curve
     assert sum(counts) == 4
-    whole_force = sum(n * np.array(series.y)[-1] for n, series in zip(counts, panel.series, strict=True))
-    assert whole_force == pytest.approx(panel.series[0].x[-1], rel=1e-3)  # open: the bolts alone carry
-    pulled = bolt_forces(joint.spring, 15e3, 100.0, np.array([0.0, 10.0, 80e3]))  # rows that are not alike
+    whole_force = sum(
+        n * np.array(series.y_values)[-1] for n, series in zip(counts, panel.chart_series, strict=True)
+    )
+    assert whole_force == pytest.approx(
+        panel.chart_series[0].x_values[-1], rel=1e-3
+    )  # open: the bolts alone carry
+    pulled = compute_bolt_forces(
+        joint.spring, 15e3, 100.0, np.array([0.0, 10.0, 80e3])
+    )  # rows that are not alike
     tilted = joint.spring.compliances(15e3, 100.0).bolt_force[:, 2]
     np.testing.assert_allclose((pulled[1] - pulled[0]) / 10.0, tilted, rtol=1e-3)
     np.testing.assert_allclose(pulled[2], 20e3, rtol=1e-3)  # open: no moment is left
     file = joint.file  # of before outlines were written
     bare = replace(file, values=replace(file.values, bodies=replace(file.values.bodies, outline=())))
     assert format_quantity((), "m") == ("none", "")
-    assert [row.value for row in page._parameter_rows(bare) if row.name == "bodies.outline"] == ["none"]
+    assert [
+        row.parameter_value
+        for row in page._make_parameter_rows(bare)
+        if row.parameter_name == "bodies.outline"
+    ] == ["none"]
     alone = with_rigid_members(joint.file.values)
-    assert report.stiffness_figures(LoadHistory(model, replace(joint.file, values=alone))) == []
+    assert report.make_stiffness_figures(LoadHistory(model, replace(joint.file, values=alone))) == []
 
 
 def test_stiffnesses_are_those_of_the_forces(made):
@@ -188,13 +200,18 @@ def test_a_tapped_joint_is_near_vdi_2230(made, capsys):
     # the same by the forces: a pull at the heads, and all of it once open
     out, _ = at(joint.spring, 0, 0, 200e-6, 0, 0, 0)
     assert out["F_bolt[1]"] == pytest.approx(-out["f_z"], rel=1e-6)
-    picture = report.picture_figure(LoadHistory(KINDS["bolted_joint"].models[0], joint.file)).pictures[1]
+    picture = report.make_plan_and_section_figure(
+        LoadHistory(KINDS["bolted_joint"].models[0], joint.file)
+    ).svg_pictures[1]
     assert "side 2: 60 mm" in picture
     assert "what lies under heads and at threads (hatched)" in picture
     assert picture.count('stroke-dasharray="2 3"') == 3  # under its head, and both walls of the thread
     capsys.readouterr()
     for thick, told in (
-        (["40", "16"], "thickness = 0.016 m is outside (0.016, inf): deeper than its threads"),
+        (
+            ["40", "16"],
+            "thickness = 0.016 m: the tapped plate must be thicker than its thread depth, 0.016 m",
+        ),
         (["30", "60"], "--thickness = 30 mm of side 1 contradicts --grip = 40 mm"),
     ):
         line = refused_line(
@@ -216,17 +233,17 @@ def test_embedding_takes_of_the_preload(made):
     """All results are calculated with the remaining preload; an embedding loss as large as the preload
     leaves none."""
     joint = made(*FOUR, preload=15e3)
-    lost = BoltedJointSpring.for_joint(replace(joint.file.values, embedding=800.0))
+    lost = BoltedJointSpring.from_joint(replace(joint.file.values, embedding=800.0))
     motion = (2e-7, 0.0, 1e-7, 1e-6, 0.0, 0.0)
     expected, _ = at(joint.spring, *motion, preload=14.2e3, moment=20.0)
     found, _ = at(lost, *motion, preload=15e3, moment=20.0)
     assert found == expected
     none, _ = at(lost, *STILL, preload=700.0)
     assert none["p_max"] == none["K_xx"] == none["F_bolt[1]"] == 0.0
-    told = report.stiffness_figures(
+    told = report.make_stiffness_figures(
         LoadHistory(KINDS["bolted_joint"].models[0], replace(joint.file, values=lost.joint))
     )
-    assert "14.2 kN in each bolt" in told[0].text
+    assert "14.2 kN in each bolt" in told[0].description
 
 
 def test_what_is_made_of_the_interface_alone_says_so(made, tmp_path, capsys):
@@ -251,18 +268,21 @@ def test_bands_are_those_of_the_whole(made):
     """Uncertainty of roughness and bolts; between the knots of the ramp and without preload, to 1e-4 of the
     values."""
     joint = made(*FOUR, preload=15e3)
-    task = state_problem(joint.file, {"h": "+-20%", "bolt_stiffness": "+-5%", "A_0": "+-5%"}, 15e3, 31)
-    found = propagate.compute_bands(task, propagate.sample_designs(task, 16, 0)[0])
+    task = define_joint_study(joint.file, {"h": "+-20%", "bolt_stiffness": "+-5%", "A_0": "+-5%"}, 15e3, 31)
+    found = propagate.compute_bands(task, propagate.draw_independent_point_sets(task, 16, 0)[0])
     out, _ = at(joint.spring, *STILL, preload=15e3)
     for name in ("K_zz", "K_xx"):
-        assert found.nominal[name][-1] == pytest.approx(out[name], rel=1e-4)
-        assert found.nominal[name][0] == pytest.approx(at(joint.spring, *STILL, preload=0.0)[0][name])
+        assert found.nominal_outputs[name][-1] == pytest.approx(out[name], rel=1e-4)
+        assert found.nominal_outputs[name][0] == pytest.approx(at(joint.spring, *STILL, preload=0.0)[0][name])
     alone = replace(joint.file, values=with_rigid_members(joint.file.values))
     rigid = propagate.compute_bands(
-        state_problem(alone, {"h": "+-20%"}, 15e3, 3), propagate.sample_designs(task, 16, 0)[0]
+        define_joint_study(alone, {"h": "+-20%"}, 15e3, 3),
+        propagate.draw_independent_point_sets(task, 16, 0)[0],
     )
-    assert rigid.nominal["K_zz"][-1] > 4.0 * found.nominal["K_zz"][-1]
-    assert rigid.nominal["approach"][-1] == pytest.approx(found.nominal["approach"][-1], rel=1e-6)
+    assert rigid.nominal_outputs["K_zz"][-1] > 4.0 * found.nominal_outputs["K_zz"][-1]
+    assert rigid.nominal_outputs["approach"][-1] == pytest.approx(
+        found.nominal_outputs["approach"][-1], rel=1e-6
+    )
 
 
 def test_a_moment_changes_the_bolts_by_their_rows(made):
@@ -272,7 +292,7 @@ def test_a_moment_changes_the_bolts_by_their_rows(made):
     np.testing.assert_allclose(forces, expected, rtol=1e-9)
 
 
-def test_sides_that_do_not_give_way_are_rigid(made):
+def test_sides_without_compliance_are_rigid(made):
     """Modes that are 1e12 times as stiff give the interface on the same patches, with the bolts at their
     positions.
 
@@ -281,8 +301,8 @@ def test_sides_that_do_not_give_way_are_rigid(made):
     """
     values = made(*FOUR, preload=15e3).file.values
     stiff = replace(values.bodies, stiffness=tuple(1e12 * k for k in values.bodies.stiffness))
-    elastic = BoltedJointSpring.for_joint(replace(values, bodies=stiff))
-    rigid = replace(BoltedJointSpring.for_joint(replace(values, sides="rigid")), patches=elastic.patches)
+    elastic = BoltedJointSpring.from_joint(replace(values, bodies=stiff))
+    rigid = replace(BoltedJointSpring.from_joint(replace(values, sides="rigid")), patches=elastic.patches)
     memory = [spring.initial_history() for spring in (elastic, rigid)]
     for six in ([1e-7, 2e-8, -1e-8, 1e-7, 0.0, 1e-7], [2e-7, 1e-7, 5e-8, -1e-7, 2e-7, 0.0]):
         (a, memory[0]), (b, memory[1]) = (
@@ -345,7 +365,7 @@ def test_the_fmu_is_the_package(made, tmp_path, flavour):
     fmu.set_values({"s_rel_x": 1e15, "theta_z": 1e20})
     line = fmu.refused(fmu.step)
     assert re.search(
-        r"s_rel_x = 1e\+15, .*: no equilibrium of the joint was found beyond a fraction of .* residual is .* "
+        r"s_rel_x = 1e\+15, .*: no equilibrium of the joint was found: .* a fraction .* residual force of .* "
         r"N",
         line,
     )
@@ -387,7 +407,7 @@ def test_a_joint_without_preload_has_no_contact_force_and_gets_it_back(made, tmp
 
 def test_a_bolt_of_no_stiffness_leaves_an_open_joint_without_force(made):
     values = made(*FOUR, preload=15e3).file.values
-    spring = BoltedJointSpring.for_joint(replace(values, bolt_stiffness=0.0))
+    spring = BoltedJointSpring.from_joint(replace(values, bolt_stiffness=0.0))
     _, memory = at(spring, *1e-7 * AXIS_X, preload=15e3)
     for apart in (1e-4, 2e-4):
         out, memory = at(spring, 1e-7, 0, apart, 0, 0, 0, memory=memory, preload=15e3)
@@ -439,7 +459,7 @@ def accept(fmu):
 
 def refused(changes, file):
     with pytest.raises(ValueError, match=r"sides|bodies") as error:
-        BoltedJointSpring.for_joint(replace(file.values, **changes))
+        BoltedJointSpring.from_joint(replace(file.values, **changes))
     return str(error.value)
 
 
@@ -447,9 +467,9 @@ def test_what_does_not_go_with_elastic_sides_is_refused(made, tmp_path, capsys):
     file = made(*FOUR, preload=15e3).file
     assert "memory = false with sides = elastic" in refused({"memory": False}, file)
     assert "damping = true with sides = elastic" in refused({"damping": True}, file)
-    assert "n_bolts = 5 is outside [4, 4]: the bolts that [bodies] has" in refused({"n_bolts": 5.0}, file)
+    assert "n_bolts = 5 is outside [4, 4]: number of bolts in [bodies]" in refused({"n_bolts": 5.0}, file)
     other = replace(file.values.bodies, x=tuple(x + 1e-3 for x in file.values.bodies.x))
-    assert "[bodies] lies 0.001 m away from the contact" in refused({"bodies": other}, file)
+    assert "[bodies] has patches up to 0.001 m away from those" in refused({"bodies": other}, file)
     text = format_parameter_file(file)
     alone = text[: text.index("[bodies]")] + text[text.index("[plate]") :] if "[plate]" in text else text
     (tmp_path / "alone.toml").write_text(alone)
@@ -555,7 +575,7 @@ def test_an_assembly_makes_the_whole_joint(made, plates, tmp_path, capsys, enter
     field, back = tmp_path / "field.csv", tmp_path / "back.toml"
     both = ["--attached", "faces", "--out", str(out), "--field", str(field)]
     assert cli.main([*words, "--refinement", "0.5", *both]) == 0
-    spring = BoltedJointSpring.for_joint(load_parameter_file(out).values)
+    spring = BoltedJointSpring.from_joint(load_parameter_file(out).values)
     assert spring.joint.has_elastic_members
     assert (
         f"joint_K_zz         {spring.evaluate(15e3, 0.0, *[(0.0,) * 3] * 2)['K_zz']:.4g} N/m"
@@ -568,13 +588,13 @@ def test_an_assembly_makes_the_whole_joint(made, plates, tmp_path, capsys, enter
     )
     assert found.bolt_stiffness == pytest.approx(before.bolt_stiffness, rel=1e-3)
     corners = 0.03 * np.array([[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]])
-    even = ContactField(np.full(4, 1e-3), corners, np.full(4, 15e6))
-    alone, _ = insert_field(load_parameter_file(out), even, 15e3, "four nodes")
+    even = ContactPressureField(np.full(4, 1e-3), corners, np.full(4, 15e6))
+    alone, _ = insert_pressure_field(load_parameter_file(out), even, 15e3, "four nodes")
     assert not alone.values.has_elastic_members
     # its field brought back, with plates of the rectangle around it: on a finer mesh the same joint
     again = ["footprint", "import", str(field), "--open", "keep", *words[3:]]
     assert cli.main([*again, "--thickness", "10", "10", "--out", str(back)]) == 0
-    returned = BoltedJointSpring.for_joint(load_parameter_file(back).values)
+    returned = BoltedJointSpring.from_joint(load_parameter_file(back).values)
     assert returned.joint.has_elastic_members
     assert (
         f"opening_load       {returned.compliances(15e3).opening_load(14.2e3):.4g} N"
@@ -628,8 +648,11 @@ def test_loops_give_friction_and_roughness_of_the_whole(made, tmp_path):
     motion, force = np.transpose(rows)
     law, facts = loop.make_shear_loop_law(joint.file.values, 15e3)
     loops = branches.cut_branches([("", motion, force)])
-    off = loop._masing_deviation(joint.file.values, 15e3, loops, law)
-    for found, low, high in ((loops, 3e-3, 1e-2), (replace(loops, force=loops.force - off), 0.0, 2e-3)):
+    off = loop._compute_masing_deviation(joint.file.values, 15e3, loops, law)
+    for found, low, high in (
+        (loops, 3e-3, 1e-2),
+        (replace(loops, joint_force=loops.joint_force - off), 0.0, 2e-3),
+    ):
         missed = (
             np.max(np.abs(found.fit_turning_points(law, found.residual_scale)[2]))
             / facts["friction_limit"][0]

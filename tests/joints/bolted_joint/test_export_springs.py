@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 from jointfmu_tools.exchange.export import ansys, keywords, tables
 from jointfmu_tools.exchange.export.mesh import NodePairs, read_node_pairs
-from jointfmu_tools.exchange.export.placing import AXIS_ORDER, SI_UNIT_SET, UNIT_SETS, Placement
+from jointfmu_tools.exchange.export.target_model import AXIS_ORDER, SI_UNIT_SET, UNIT_SETS, TargetModel
 from jointfmu_tools.joints.bolted_joint.export import (
     TOTAL_STIFFNESS_AND_DAMPING_NAMES,
-    springs_of_joint,
-    springs_on_mesh,
-    springs_under_pressure,
+    make_springs_of_joint,
+    make_springs_on_mesh,
+    make_springs_under_pressure,
 )
 
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
@@ -31,12 +31,12 @@ DIGITS = 1e-8  # the formats carry nine digits
 
 @pytest.fixture(scope="module")
 def joint():
-    return BoltedJointSpring.for_interface_nodes(load_default("bolted_joint").values)
+    return BoltedJointSpring.from_interface_nodes(load_default("bolted_joint").values)
 
 
 @pytest.fixture(scope="module")
 def found(joint):
-    return springs_of_joint(joint, 15e3, 4500.0)
+    return make_springs_of_joint(joint, 15e3, 4500.0)
 
 
 def grid(size, nodes):
@@ -55,7 +55,7 @@ def grid(size, nodes):
 
 @pytest.mark.parametrize(("preload", "moment"), [(9e3, 0.0), (15e3, 4500.0), (20e3, -3000.0)])
 def test_pairs_add_up_to_the_joint(joint, preload, moment):
-    springs = springs_of_joint(joint, preload, moment)
+    springs = make_springs_of_joint(joint, preload, moment)
     state = joint.evaluate(preload, moment, REST, REST)
     # sums of a thousand terms: round-off
     for name, column in zip(
@@ -82,7 +82,7 @@ def test_stiffness_of_a_pair_is_the_law_at_its_pressure(joint, found):
 
 def test_open_pairs_are_left_out(joint):
     moment = 0.9 * 15e3 * 3 * joint.joint.row_distance * 1.5  # one row gives way
-    springs = springs_of_joint(joint, 15e3, moment)
+    springs = make_springs_of_joint(joint, 15e3, moment)
     p = preload_pressure(joint.joint, joint.points, 15e3, moment)
     assert springs.open_pair_count == np.sum(p == 0.0) > 0
     assert len(springs.node_labels) == np.sum(p > 0.0)
@@ -92,7 +92,7 @@ def test_open_pairs_are_left_out(joint):
 @pytest.mark.parametrize("state", [(0.0, 0.0), (-1.0, 0.0), (np.nan, 0.0), (1e9, 0.0)])
 def test_state_outside_the_law_is_refused(joint, state):
     with pytest.raises(ValueError, match=r"preload = .* N per bolt with moment = .* outside the law"):
-        springs_of_joint(joint, *state)
+        make_springs_of_joint(joint, *state)
 
 
 # ---- meshes ----
@@ -101,7 +101,7 @@ def test_state_outside_the_law_is_refused(joint, state):
 def test_the_joints_own_nodes_as_a_mesh_give_the_same(joint, found):
     area = joint.points.area_share * joint.joint.A_0
     mesh = NodePairs("own.csv", found.node_labels, joint.points.position, area, None)
-    same = springs_on_mesh(joint, mesh, 15e3, 4500.0)
+    same = make_springs_on_mesh(joint, mesh, 15e3, 4500.0)
     np.testing.assert_allclose(same.K_n, found.K_n, rtol=1e-9)  # the triangulation's round-off
     assert same.stiffness_correction_factor == pytest.approx(1.0, rel=1e-9)
 
@@ -110,7 +110,7 @@ def test_the_joints_own_nodes_as_a_mesh_give_the_same(joint, found):
 def test_a_mesh_has_the_joints_sums(joint, nodes):
     labels, place, area = grid((0.12, 0.17), nodes)
     area *= joint.joint.A_0 / area.sum()
-    springs = springs_on_mesh(joint, NodePairs("mesh.csv", labels, place, area, None), 15e3, 4500.0)
+    springs = make_springs_on_mesh(joint, NodePairs("mesh.csv", labels, place, area, None), 15e3, 4500.0)
     state = joint.evaluate(15e3, 4500.0, REST, REST)
     assert springs.K_n.sum() == pytest.approx(state["K_zz"], rel=1e-12)
     assert springs.C_t.sum() == pytest.approx(state["C_xx"], rel=1e-12)
@@ -126,14 +126,14 @@ def test_stated_pressures_give_the_law_at_them(joint):
     area *= joint.joint.A_0 / area.sum()
     p = 1e6 * (1.0 + 5.0 * place[:, 1] ** 2 / 0.17**2)
     p[:7] = 0.0
-    springs = springs_under_pressure(joint, NodePairs("mesh.csv", labels, place, area, p))
+    springs = make_springs_under_pressure(joint, NodePairs("mesh.csv", labels, place, area, p))
     assert springs.open_pair_count == 7
     np.testing.assert_allclose(springs.pressure, p[7:], rtol=1e-12)
     k = joint.curve.derivatives(joint.curve.inverse(p[7:]), 1)[1]
     np.testing.assert_allclose(springs.K_n, area[7:] * k, rtol=1e-12)
     assert not np.any(springs.C_n)  # plastic work of first loading
     joint = replace(joint, joint=replace(joint.joint, plastic_damping=True))
-    springs = springs_under_pressure(joint, NodePairs("mesh.csv", labels, place, area, p))
+    springs = make_springs_under_pressure(joint, NodePairs("mesh.csv", labels, place, area, p))
     plastic, elastic = joint.first_loading_work(p)  # open nodes count with the closing's end, as in the joint
     eta = (plastic @ area) / (elastic @ area)
     expected = eta * np.sqrt(joint.joint.mass * springs.K_n.sum())
@@ -144,17 +144,17 @@ def test_meshes_that_do_not_fit_are_refused(joint):
     labels, place, area = grid((0.12, 0.17), (25, 35))
     area *= joint.joint.A_0 / area.sum()
     with pytest.raises(ValueError, match=r"m.csv: the areas add up to 0.0764 m2, the joint has A_0 = 0.0382"):
-        springs_on_mesh(joint, NodePairs("m.csv", labels, place, 2.0 * area, None), 9e3, 0.0)
-    with pytest.raises(ValueError, match=r"m.csv: node \d+ is .* m off the joint"):
-        springs_on_mesh(joint, NodePairs("m.csv", labels, 1.5 * place, area, None), 9e3, 0.0)
+        make_springs_on_mesh(joint, NodePairs("m.csv", labels, place, 2.0 * area, None), 9e3, 0.0)
+    with pytest.raises(ValueError, match=r"m.csv: node \d+ is .* m outside the joint's contact"):
+        make_springs_on_mesh(joint, NodePairs("m.csv", labels, 1.5 * place, area, None), 9e3, 0.0)
     peaks = np.argsort(joint.points.preload_pressure_ratio)[-3:]  # beside bolts only
     coarse = NodePairs("m.csv", labels[:3], joint.points.position[peaks], np.full(3, 0.0382 / 3), None)
     with pytest.raises(
-        ValueError, match=r"m.csv: the pressures at its nodes carry .* times the joint's force"
+        ValueError, match=r"m.csv: the pressures at its nodes add up to .* times the joint's force"
     ):
-        springs_on_mesh(joint, coarse, 15e3, 4500.0)
+        make_springs_on_mesh(joint, coarse, 15e3, 4500.0)
     with pytest.raises(ValueError, match="has no column 'pressure'"):
-        springs_under_pressure(joint, NodePairs("m.csv", labels, place, area, None))
+        make_springs_under_pressure(joint, NodePairs("m.csv", labels, place, area, None))
 
 
 HEAD = "node_1 [1],node_2 [1],x [mm],y [mm],area [mm2],pressure [MPa]\n"
@@ -166,11 +166,11 @@ def test_pairs_are_read_in_their_units(tmp_path):
     path.write_text(HEAD + ROWS)
     mesh = read_node_pairs(path)
     assert mesh.node_labels.tolist() == [[1, 11], [2, 12], [3, 13]]
-    np.testing.assert_allclose(mesh.area, [2e-6, 2e-6, 4e-6])
-    np.testing.assert_allclose(mesh.pressure, [1e6, 0.0, 2.5e6])
+    np.testing.assert_allclose(mesh.contact_area, [2e-6, 2e-6, 4e-6])
+    np.testing.assert_allclose(mesh.contact_pressure, [1e6, 0.0, 2.5e6])
     np.testing.assert_allclose(mesh.position, [[-1e-3, -3e-3], [3e-3, -3e-3], [-1e-3, 3e-3]])
     path.write_text(HEAD.replace(",pressure [MPa]", "") + "\n".join(r[: r.rfind(",")] for r in ROWS.split()))
-    assert read_node_pairs(path).pressure is None
+    assert read_node_pairs(path).contact_pressure is None
 
 
 @pytest.mark.parametrize(
@@ -186,7 +186,7 @@ def test_pairs_are_read_in_their_units(tmp_path):
         ("area [mm2]", "area", "column 'area' has no unit"),
         ("area [mm2]", "area [in2]", "column 'area' has unit 'in2', allowed are m2, mm2"),
         ("node_2 [1]", "other [1]", "has no column 'node_2'"),
-        ("3,13,0,6,4,2.5\n", "", "has 2 points, at least 3"),
+        ("3,13,0,6,4,2.5\n", "", "has 2 rows of numbers, at least 3"),
     ],
 )
 def test_bad_pairs_are_refused_with_their_place(tmp_path, old, new, said):
@@ -202,13 +202,13 @@ def test_bad_pairs_are_refused_with_their_place(tmp_path, old, new, said):
 
 def test_units():
     # 1 N/mm = 1e3 N/m, 1 MPa = 1 N/mm2, 1 t = 1 N s2/mm
-    assert MM.convert(2e3, "N/m") == pytest.approx(2.0)
-    assert MM.convert(3e6, "Pa") == pytest.approx(3.0)
-    assert MM.convert(1.0, "m2") == pytest.approx(1e6)
-    assert MM.convert(5.0, "N.m") == pytest.approx(5e3)
-    assert MM.convert(1e9, "N/m3") == pytest.approx(1.0)
-    assert [MM.symbol(u) for u in ("Pa", "N", "N.s/m")] == ["MPa", "N", "N.s/mm"]
-    assert SI_UNIT_SET.convert(7.0, "Pa") == 7.0
+    assert MM.convert_from_si(2e3, "N/m") == pytest.approx(2.0)
+    assert MM.convert_from_si(3e6, "Pa") == pytest.approx(3.0)
+    assert MM.convert_from_si(1.0, "m2") == pytest.approx(1e6)
+    assert MM.convert_from_si(5.0, "N.m") == pytest.approx(5e3)
+    assert MM.convert_from_si(1e9, "N/m3") == pytest.approx(1.0)
+    assert [MM.unit_symbol(u) for u in ("Pa", "N", "N.s/m")] == ["MPa", "N", "N.s/mm"]
+    assert SI_UNIT_SET.convert_from_si(7.0, "Pa") == 7.0
 
 
 @pytest.mark.parametrize("normal", list(AXIS_ORDER))
@@ -219,7 +219,7 @@ def test_ansys_is_read_by_mapdl_archive(found, tmp_path, normal):
     path.write_text(
         ansys.format_springs(
             found,
-            Placement(MM, normal, first_free_number=1, first_free_set_number=1),
+            TargetModel(MM, normal, first_free_number=1, first_free_set_number=1),
             ["first line\nand second"],
         )
     )
@@ -267,7 +267,7 @@ def symmetric(upper):
 def test_the_order_of_the_constants_is_the_references():
     # "if a simple spring of stiffness K in the nodal x direction is desired, the input constants would be
     # C1=C58=K and C7=-K" (ANSYS element reference, MATRIX27)
-    constants = ansys.compute_upper_triangle(np.array([3.0, 0.0, 0.0]))
+    constants = ansys.compute_matrix27_constants(np.array([3.0, 0.0, 0.0]))
     assert {i + 1: v for i, v in enumerate(constants) if v} == {1: 3.0, 58: 3.0, 7: -3.0}
 
 
@@ -276,7 +276,7 @@ def test_abaqus_is_read_by_abq2ccx(found, tmp_path):
     deck = tmp_path / "springs.inp"
     step = "*STEP\n*STATIC\n*END STEP\n"
     text = keywords.format_springs(
-        found, Placement(MM, "z", first_free_number=1), ["about"], has_dashpots=True
+        found, TargetModel(MM, "z", first_free_number=1), ["about"], writes_dashpots=True
     )
     deck.write_text(text + step)
     done = subprocess.run(
@@ -303,7 +303,7 @@ def test_meshio_has_no_name_for_the_elements(found, tmp_path, capsys, dashpots):
 
     deck = tmp_path / "springs.inp"
     text = keywords.format_springs(
-        found, Placement(MM, "z", first_free_number=1), ["about"], has_dashpots=dashpots
+        found, TargetModel(MM, "z", first_free_number=1), ["about"], writes_dashpots=dashpots
     )
     names = set(re.findall(r"^\*ELEMENT, TYPE=(\w+)", text, re.MULTILINE))
     assert names == ({"SPRING2", "DASHPOT2"} if dashpots else {"SPRING2"})
@@ -349,7 +349,7 @@ def deck_cards(text):
 
 def test_calculix_text_has_the_same_springs_and_no_dashpots(found):
     text = keywords.format_springs(
-        found, Placement(MM, "x", first_free_number=5000, has_own_nodes=False), [], has_dashpots=False
+        found, TargetModel(MM, "x", first_free_number=5000, defines_nodes=False), [], writes_dashpots=False
     )
     elements, values = deck_cards(text)
     assert "*NODE" not in text
@@ -368,7 +368,7 @@ def test_calculix_text_has_the_same_springs_and_no_dashpots(found):
 
 
 def test_csv_is_read_by_the_standard_library(found):
-    text = tables.format_springs_csv(found, Placement(MM), ["about"])
+    text = tables.format_springs_csv(found, TargetModel(MM), ["about"])
     lines = [line for line in text.splitlines() if not line.startswith("#")]
     rows = list(csv.DictReader(io.StringIO("\n".join(lines))))
     read = {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
@@ -381,6 +381,6 @@ def test_csv_is_read_by_the_standard_library(found):
 
 def test_what_is_written_as_csv_is_a_mesh_again(joint, found, tmp_path):
     path = tmp_path / "springs.csv"
-    path.write_text(tables.format_springs_csv(found, Placement(MM), []))
-    again = springs_under_pressure(joint, read_node_pairs(path))
+    path.write_text(tables.format_springs_csv(found, TargetModel(MM), []))
+    again = make_springs_under_pressure(joint, read_node_pairs(path))
     np.testing.assert_allclose(again.K_n, found.K_n, rtol=1e-9)  # pressures of twelve digits, power 0.9

@@ -66,7 +66,7 @@ def test_the_cone_below_a_washer_is_nearer_than_the_face_of_the_surface_pressure
     the washer, against a plate with its washer. The other diameter is d_Wa = d_w + 1.6 h_S, which VDI 2230
     uses for the surface pressure."""
     thread = read_threads()["M16"]
-    washer, d_w = find_washer(thread), thread.hexagon
+    washer, d_w = find_washer(thread), thread.hexagon_bearing_diameter
     slope = vdi2230.cone_slope(2.0 * (THICKNESS + washer.thickness), d_w, 2.0 * RADIUS, is_tapped=False)
     own = vdi2230.washer_compliance(d_w, washer, slope)
     solid = compliance(d_w, washer)

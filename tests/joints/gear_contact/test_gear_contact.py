@@ -15,7 +15,7 @@ from scipy.integrate import quad
 
 from jointfmu.contact.interface import evaluate_at_pressure
 from jointfmu.joints.gear_contact.spring import GearContactParameters, GearContactSpring
-from jointfmu.mechanics.curve import CLOSING_END_OVER_PLASTIC_SPOT_AREA, MAX_ERROR
+from jointfmu.mechanics.curve import CLOSING_END_OVER_PLASTIC_SPOT_AREA, MAX_INTERPOLATION_ERROR
 from jointfmu.parameters import load_default, load_parameter_file
 from jointfmu.quantity import build_parameter_set, flatten_parameters
 
@@ -68,9 +68,9 @@ def test_approach_is_the_integral_of_df_over_K(spring):
         ends = np.log([low, *(b for b in breaks if low < b < high), high])
         s += sum(quad(per_log, a, b, epsabs=0.0, epsrel=1e-10)[0] for a, b in pairwise(ends))
         out = spring.evaluate(high)
-        assert float(out["s_rel"]) == pytest.approx(s, rel=MAX_ERROR)
+        assert float(out["s_rel"]) == pytest.approx(s, rel=MAX_INTERPOLATION_ERROR)
         assert float(out["K_N"]) == pytest.approx(
-            float(evaluate_at_pressure(spring.joint, high / A_0)["K_N"]), rel=MAX_ERROR
+            float(evaluate_at_pressure(spring.joint, high / A_0)["K_N"]), rel=MAX_INTERPOLATION_ERROR
         )
 
 
@@ -271,9 +271,9 @@ def test_the_file_has_the_stiffness_it_shows(capsys, tmp_path):
 @pytest.mark.parametrize(
     ("radii", "text"),
     [
-        (["12"], "--radii has 1 values, expected one of each flank"),
-        (["-12", "30"], "--radii = -12 30: the flanks do not bulge towards each other"),
-        (["flat", "flat"], "do not bulge towards each other"),
+        (["12"], "--radii has 1 values, expected 2: one for each flank"),
+        (["-12", "30"], "--radii = -12 30: expected 1/R1 + 1/R2 above 0"),
+        (["flat", "flat"], "expected 1/R1 + 1/R2 above 0"),
         (["0", "30"], "--radii = 0 mm is not a radius"),
         (["a", "30"], "--radii = 'a' is not a number"),
     ],

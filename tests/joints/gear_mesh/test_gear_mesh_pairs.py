@@ -14,7 +14,7 @@ from test_gear_mesh_spring import MESH, each, motion
 from jointfmu.contact.interface import evaluate_at_pressure
 from jointfmu.joints.gear_contact.spring import GearContactParameters, GearContactSpring
 from jointfmu.joints.gear_mesh.spring import GearMeshParameters, GearMeshSpring, pairs_in_contact
-from jointfmu.mechanics.curve import MAX_ERROR, tabulate_approach
+from jointfmu.mechanics.curve import MAX_INTERPOLATION_ERROR, tabulate_approach
 from jointfmu.parameters import load_default
 from jointfmu.quantity import build_parameter_set, flatten_parameters, replace_values
 
@@ -151,7 +151,7 @@ def test_the_pair_is_flanks_and_teeth_in_series(spring):
     """s = delta(F) + F/K_tooth solved for F by brentq, with delta by adaptive quadrature of the law."""
     mesh = spring.joint
     flanks = tabulate_approach(mesh)
-    first, force, delta = mesh.A_0 * flanks.closing_end_load, 0.0, -float(flanks.displacement[0])
+    first, force, delta = mesh.A_0 * flanks.closing_end_pressure, 0.0, -float(flanks.displacement[0])
 
     def per_log(t):
         return np.exp(t) / float(evaluate_at_pressure(mesh, np.exp(t) / mesh.A_0)["K_N"])
@@ -178,9 +178,11 @@ def test_the_pair_is_flanks_and_teeth_in_series(spring):
 
         solved = brentq(miss, 0.5 * force, 2.0 * force, xtol=1e-12 * force, rtol=1e-14)
         found, K = spring.curve.derivatives(s, 1)
-        assert found == pytest.approx(force, rel=2.0 * MAX_ERROR)  # of the flanks' table and the pair's
-        assert found == pytest.approx(solved, rel=2.0 * MAX_ERROR)
-        assert pytest.approx(stiffness, rel=2.0 * MAX_ERROR) == K
+        assert found == pytest.approx(
+            force, rel=2.0 * MAX_INTERPOLATION_ERROR
+        )  # of the flanks' table and the pair's
+        assert found == pytest.approx(solved, rel=2.0 * MAX_INTERPOLATION_ERROR)
+        assert pytest.approx(stiffness, rel=2.0 * MAX_INTERPOLATION_ERROR) == K
 
 
 @each
@@ -202,10 +204,10 @@ def test_the_closing_is_in_series_too(spring):
 
         solved = brentq(miss, start, 0.0, xtol=1e-22, rtol=1e-15)
         # the approach is known to 1e-16 of the closing, the load grows with its cube
-        allowed = MAX_ERROR + 10.0 * EPS / part
+        allowed = MAX_INTERPOLATION_ERROR + 10.0 * EPS / part
         assert spring.curve.derivatives(s, 0)[0] == pytest.approx(load(solved), rel=allowed)
-    assert spring.closing_end == pytest.approx(
-        -start + mesh.A_0 * flanks.closing_end_load / mesh.K_tooth, rel=4.0 * EPS
+    assert spring.closing_end_deflection == pytest.approx(
+        -start + mesh.A_0 * flanks.closing_end_pressure / mesh.K_tooth, rel=4.0 * EPS
     )
 
 
@@ -213,7 +215,7 @@ def test_the_closing_is_in_series_too(spring):
 def test_the_table_starts_at_first_touch_and_ends_at_the_hardness(spring):
     assert (spring.curve.displacement[0], spring.curve.load[0], spring.curve.stiffness[0]) == (0.0, 0.0, 0.0)
     assert spring.curve.end_point[1] == pytest.approx(spring.joint.A_0 * spring.joint.hardness, rel=1e-12)
-    assert spring.curve.interpolation_error <= MAX_ERROR
+    assert spring.curve.interpolation_error <= MAX_INTERPOLATION_ERROR
     assert np.all(np.diff(spring.curve.load) > 0.0)
 
 
@@ -238,13 +240,13 @@ def test_any_mesh_gives_a_monotone_table_or_is_refused(law, teeth):
         assert "nodes" in str(error)  # noqa: PT017
         assert teeth < 0.1
         return
-    assert spring.curve.interpolation_error <= MAX_ERROR
+    assert spring.curve.interpolation_error <= MAX_INTERPOLATION_ERROR
     x = spring.curve.displacement
     places = (x[:-1] + np.linspace(0, 1, 9)[:-1, None] * np.diff(x)).T.ravel()
     load, stiffness = spring.curve.derivatives(places, 1)
     assert np.all(np.diff(load) > 0.0)
     assert np.all(stiffness[1:] > 0.0)
-    assert np.all(stiffness < own["K_tooth"] * (1.0 + MAX_ERROR))
+    assert np.all(stiffness < own["K_tooth"] * (1.0 + MAX_INTERPOLATION_ERROR))
 
 
 def test_hard_teeth_leave_the_contact_alone():
@@ -253,8 +255,8 @@ def test_hard_teeth_leave_the_contact_alone():
     f = np.geomspace(1e-3, 0.99, 20) * contact.max_force
     alone = contact.evaluate(f)
     found = motion(hard, alone["s_rel"], 0.0)
-    np.testing.assert_allclose(found["f"], f, rtol=2.0 * MAX_ERROR)
-    np.testing.assert_allclose(found["K"], alone["K_N"], rtol=2.0 * MAX_ERROR)
+    np.testing.assert_allclose(found["f"], f, rtol=2.0 * MAX_INTERPOLATION_ERROR)
+    np.testing.assert_allclose(found["K"], alone["K_N"], rtol=2.0 * MAX_INTERPOLATION_ERROR)
 
 
 def test_teeth_too_soft_for_a_table_are_refused():

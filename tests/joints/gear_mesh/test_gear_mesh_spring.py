@@ -140,7 +140,9 @@ def period(panels=40_000):
 
 def undamped(spring):
     """Spring of the same mesh without damping."""
-    return GearMeshSpring(replace_values(spring.joint, {"d": 0.0}), spring.curve, spring.closing_end)
+    return GearMeshSpring(
+        replace_values(spring.joint, {"d": 0.0}), spring.curve, spring.closing_end_deflection
+    )
 
 
 @each
@@ -188,11 +190,13 @@ def test_what_a_path_loses_is_the_work_of_the_damping(spring, seed):
 def test_damping_comes_in_over_the_closing(spring):
     """Zero at first contact, d when the contact has closed, smooth between."""
     still, v = undamped(spring), 0.01
-    s = np.concatenate([[0.0], np.linspace(1e-3, 3.0, 2000)]) * spring.closing_end
+    s = np.concatenate([[0.0], np.linspace(1e-3, 3.0, 2000)]) * spring.closing_end_deflection
     damped = motion(spring, s, 0.0, v)["f"] - motion(still, s, 0.0, v)["f"]
     full = spring.joint.d * v
     assert damped[0] == 0.0
-    np.testing.assert_allclose(damped[s > 1.001 * spring.closing_end], full, rtol=1e-6)  # of a larger force
+    np.testing.assert_allclose(
+        damped[s > 1.001 * spring.closing_end_deflection], full, rtol=1e-6
+    )  # of a larger force
     # 1.875/3 of the whole over the 2000 steps at the steepest, and the force's round-off
     assert np.max(np.abs(np.diff(damped))) < 1.9 * 3.0 / 2000.0 * full
     np.testing.assert_allclose(
@@ -246,7 +250,9 @@ def test_mean_stiffness_is_the_contact_ratio_times_a_pairs():
 @pytest.mark.parametrize("ratio", [1.0, 2.0])
 def test_a_whole_contact_ratio_has_no_mesh_cycle(ratio):
     spring = SPRINGS["default"]
-    even = GearMeshSpring(replace_values(MESH, {"contact_ratio": ratio}), spring.curve, spring.closing_end)
+    even = GearMeshSpring(
+        replace_values(MESH, {"contact_ratio": ratio}), spring.curve, spring.closing_end_deflection
+    )
     out = motion(even, 2e-5, np.linspace(0.0, 3.0, 50) * base_pitch(MESH))
     assert np.all(out["pairs"] == ratio)
     np.testing.assert_allclose(out["tau1"], -MESH.r_b1 * out["f"], rtol=1e-14)
@@ -301,17 +307,19 @@ def test_symbols(name):
     before = casadi.GlobalOptions.getNumpyMode()
     casadi.GlobalOptions.setNumpyMode(1)
     try:
-        out = mesh_outputs(mesh, x[:4], x[5], x[6], x[7], spring.closing_end)
+        out = mesh_outputs(mesh, x[:4], x[5], x[6], x[7], spring.closing_end_deflection)
         function = casadi.Function("f", [symbols], [casadi.vertcat(*out.values())])
     finally:
         casadi.GlobalOptions.setNumpyMode(before)
     for roll in np.linspace(-1.0, 1.0, 21) * base_pitch(mesh):
-        for s in (-2e-5, 0.3 * spring.closing_end, 2e-5):
+        for s in (-2e-5, 0.3 * spring.closing_end_deflection, 2e-5):
             phi1, phi2 = at(spring, s, roll)
             moving = (phi1, 0.3, phi2, -0.1)
             for ratio in (1.0, 1.69, 2.3):
                 sure = GearMeshSpring(
-                    replace_values(mesh, {"contact_ratio": ratio}), spring.curve, spring.closing_end
+                    replace_values(mesh, {"contact_ratio": ratio}),
+                    spring.curve,
+                    spring.closing_end_deflection,
                 )
                 way = float(np.abs(deflection(sure.joint, moving)))
                 load, stiffness = (float(y) for y in spring.curve.derivatives(way, 1))

@@ -11,7 +11,7 @@ from jointfmu_tools import cli
 from jointfmu_tools.exchange.export.exports import require_export
 from jointfmu_tools.joints.gear_mesh.involute import InvoluteGearPair
 from jointfmu_tools.studies.uncertainty import propagate
-from jointfmu_tools.studies.uncertainty.problem import state_problem
+from jointfmu_tools.studies.uncertainty.problem import define_joint_study
 from jointfmu_tools.studies.uncertainty.runs import evaluate_runs
 from test_modelica import EXACT, move, simulate, top
 
@@ -262,13 +262,13 @@ def test_options(capsys):
 @pytest.mark.parametrize(
     ("words", "text"),
     [
-        (["--teeth", "29"], "--teeth has 1 values, expected one of each wheel"),
+        (["--teeth", "29"], "--teeth has 1 values, expected 2: one for each wheel"),
         (["--teeth", "29", "45.5"], "--teeth = 29 45.5: expected whole numbers"),
         (["--module", "0"], "--module = '0' is outside (0, inf)"),
         (["--pressure-angle", "50"], "--pressure-angle = 50 deg is outside (0, 45)"),
         (["--helix-angle", "-5"], "--helix-angle = -5 deg is outside [0, 60)"),
         (["--helix-angle", "55"], "contact_ratio"),
-        (["--profile-shift", "0.3"], "--profile-shift has 1 values, expected one of each wheel"),
+        (["--profile-shift", "0.3"], "--profile-shift has 1 values, expected 2: one for each wheel"),
         (["--profile-shift", "2.4", "0"], "--profile-shift = '2.4' is outside [-2, 2]"),
         (["--profile-shift", "-2", "-2", "--teeth", "9", "9"], "the wheels mesh at no centre distance"),
         (
@@ -281,7 +281,7 @@ def test_options(capsys):
             "needs shifts with the sum 0.2562",
         ),
         (["--centre-distance", "130"], "--profile-shift 0 0 gives 148 mm"),
-        (["--tip-diameter", "124"], "--tip-diameter has 1 values, expected one of each wheel"),
+        (["--tip-diameter", "124"], "--tip-diameter has 1 values, expected 2: one for each wheel"),
         (["--tip-diameter", "105", "188"], "105 mm of wheel 1 is not above the base diameter 109.004 mm"),
         (["--tip-diameter", "124", "169"], "169 mm of wheel 2 is not above the base diameter 169.145 mm"),
         (["--tip-diameter", "126", "188"], "126 mm of wheel 1 reaches 0.2 mm into the root of wheel 2"),
@@ -305,15 +305,15 @@ MESH = load_default("gear_mesh").values
 def test_force_over_deflection_is_the_mean_over_the_mesh_cycle():
     table = require_export("gear_mesh", "curve").compute_table(MESH, None, 1e-3)
     spring = GearMeshSpring.tabulate(MESH)
-    s, f, K = table.rows.T
+    s, f, K = table.table_rows.T
     load, stiffness = spring.curve.derivatives(np.abs(s), 1)
     np.testing.assert_allclose(f, MESH.contact_ratio * load * np.sign(s), rtol=1e-9)  # a shift of the table
     np.testing.assert_allclose(K, MESH.contact_ratio * stiffness, rtol=1e-9, atol=1e-9 * np.max(K))
-    np.testing.assert_array_equal(table.rows[::-1] * [-1.0, -1.0, 1.0], table.rows)
-    between = np.linspace(spring.closing_end, s[-1], 5001)
+    np.testing.assert_array_equal(table.table_rows[::-1] * [-1.0, -1.0, 1.0], table.table_rows)
+    between = np.linspace(spring.closing_end_deflection, s[-1], 5001)
     exact = MESH.contact_ratio * spring.curve.derivatives(between, 0)[0]
     np.testing.assert_allclose(np.interp(between, s, f), exact, rtol=1.01e-3)
-    assert table.linear_errors[0] <= 1e-3
+    assert table.linear_interpolation_errors[0] <= 1e-3
 
 
 def test_the_contact_is_that_of_the_flanks():
@@ -405,11 +405,11 @@ def test_samples_are_those_of_the_python_law(name, s_rel):
     """Deflections [m] of the driving flanks; the default table ends at 474 um, earlier with stiff teeth."""
     joint = load_default("gear_mesh")
     shorter = 0.1 if "K_tooth" in STUDIES[name] and s_rel > 1e-6 else 1.0
-    task = state_problem(joint, STUDIES[name], shorter * s_rel / joint.values.r_b1, 9)
-    points = propagate.sample_designs(task, 256, 5)[0][:16]
+    task = define_joint_study(joint, STUDIES[name], shorter * s_rel / joint.values.r_b1, 9)
+    points = propagate.draw_independent_point_sets(task, 256, 5)[0][:16]
     accepted = 0
-    for i, settings in enumerate(task.list_runs(points)):
-        entry = task.evaluator.run(i, settings)
+    for i, settings in enumerate(task.list_run_settings(points)):
+        entry = task.run_evaluator.execute_run(i, settings)
         if "error" in entry:
             continue
         accepted += 1
@@ -427,19 +427,21 @@ def test_samples_are_those_of_the_python_law(name, s_rel):
 @pytest.mark.slow
 def test_bands():
     """The teeth are softer than the contact, so they determine the band."""
-    task = state_problem(load_default("gear_mesh"), {"surface1.D": "1.4..1.5", "K_tooth": "+-10%"}, None, 6)
-    found = propagate.compute_bands(task, propagate.sample_designs(task, 64, 0)[0])
-    assert found.refused_samples.count == 0
+    task = define_joint_study(
+        load_default("gear_mesh"), {"surface1.D": "1.4..1.5", "K_tooth": "+-10%"}, None, 6
+    )
+    found = propagate.compute_bands(task, propagate.draw_independent_point_sets(task, 64, 0)[0])
+    assert found.refused_samples.refused_count == 0
     low, high = found.quantiles["K"][[0, -1], -1]
-    nominal = found.nominal["K"][-1]
+    nominal = found.nominal_outputs["K"][-1]
     assert low < 0.95 * nominal < 1.05 * nominal < high
 
 
 @pytest.mark.slow
 def test_default_ramp_ends_inside_the_table():
     joint = load_default("gear_mesh").values
-    task = state_problem(load_default("gear_mesh"), {"K_tooth": "+-1%"}, None, 2)
-    f = task.evaluator.run(-1, task.settings)["columns"]["f"][-1]
+    task = define_joint_study(load_default("gear_mesh"), {"K_tooth": "+-1%"}, None, 2)
+    f = task.run_evaluator.execute_run(-1, task.common_settings)["columns"]["f"][-1]
     assert 0.5 < f / (2.0 * 0.05 * joint.hardness * joint.A_0) < 1.0  # two pairs; the flanks give way too
 
 
@@ -447,7 +449,7 @@ def test_default_ramp_ends_inside_the_table():
 def test_every_parameter_can_be_uncertain():
     values = flatten_parameters(load_default("gear_mesh").values)
     names = [n for n, v in values.items() if isinstance(v, float) and v and n != "teeth1"]
-    task = state_problem(load_default("gear_mesh"), dict.fromkeys(names, "+-1%"), None, 3)
-    runs = task.list_runs(propagate.sample_designs(task, 16, 0)[0])
-    outcome = evaluate_runs(task.evaluator, runs, task.units, task.loads.size)
-    assert np.all(outcome.accepted)
+    task = define_joint_study(load_default("gear_mesh"), dict.fromkeys(names, "+-1%"), None, 3)
+    runs = task.list_run_settings(propagate.draw_independent_point_sets(task, 16, 0)[0])
+    outcome = evaluate_runs(task.run_evaluator, runs, task.output_units, task.loads.size)
+    assert np.all(outcome.accepted_mask)

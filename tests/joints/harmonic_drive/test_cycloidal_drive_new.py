@@ -5,7 +5,7 @@ import math
 import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
-from jointfmu_tools.joints.harmonic_drive.efficiency import hysteresis_loss, lost_motion
+from jointfmu_tools.joints.harmonic_drive.efficiency import compute_hysteresis_loss, compute_lost_motion
 
 import jointfmu
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
@@ -28,8 +28,8 @@ def test_the_computed_loop_has_the_printed_numbers(tmp_path):
     file = load_parameter_file(path)
     spring = HarmonicDriveSpring.tabulate(file.values)
     assert (file.law, file.values.ratio, file.values.max_torque) == ("catalogue", 121.0, 1648.0)
-    assert lost_motion(spring, 0.03) == pytest.approx(ARCMIN, rel=1e-6)
-    assert hysteresis_loss(spring) == pytest.approx(0.8 * ARCMIN, rel=1e-6)
+    assert compute_lost_motion(spring, 0.03) == pytest.approx(ARCMIN, rel=1e-6)
+    assert compute_hysteresis_loss(spring) == pytest.approx(0.8 * ARCMIN, rel=1e-6)
     history, angle = spring.initial_history(), {}
     for torque in (412.0, -412.0, 206.0, 412.0):
         outputs, history = spring.advance_torque(torque, history)

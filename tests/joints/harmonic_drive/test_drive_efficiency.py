@@ -19,14 +19,14 @@ from jointfmu_tools.joints.harmonic_drive.efficiency import (
 from jointfmu_tools.joints.harmonic_drive.friction import (
     CATALOGUE_MOTOR_SPEED,
     PublishedFriction,
-    rated_efficiency,
+    compute_rated_efficiency,
     scale_friction,
 )
 from jointfmu_tools.joints.harmonic_drive.new import NEW_JOINT_COMMAND
 from jointfmu_tools.joints.harmonic_drive.report import compare_with_catalogue
 from jointfmu_tools.pages.report.figure import ROLE_INDEPENDENT, ROLE_PARAMETER_SOURCE, ROLE_PREDICTED
 from jointfmu_tools.pages.report.joint import write_joint_report
-from jointfmu_tools.studies.uncertainty.problem import state_problem
+from jointfmu_tools.studies.uncertainty.problem import define_joint_study
 from oracles.drive_friction import (
     DRIVES,
     JOINTS,
@@ -88,12 +88,12 @@ def test_back_driving_takes_the_starting_torque_and_what_the_load_adds(fmu: Path
 
 
 def test_the_report_draws_it(fmu: Path) -> None:
-    *curves, back = job.friction_charts(fmu)
+    *curves, back = job.make_friction_charts(fmu)
     for panel in curves:
-        slow, _, fast, *_ = (series.y for series in panel.series)
+        slow, _, fast, *_ = (series.y_values for series in panel.chart_series)
         assert all(0.0 < b < a < 1.0 for a, b in zip(slow, fast, strict=True))
         assert list(slow) == sorted(slow)
-    assert [*back.series[0].titles] == [drive.name for drive in drives_with_friction()]
+    assert [*back.chart_series[0].marker_tooltips] == [drive.joint_name for drive in drives_with_friction()]
 
 
 def drive_file(**changes: float) -> ParameterFile:
@@ -121,7 +121,7 @@ def test_the_page_of_a_drive_says_what_friction_costs(tmp_path: Path) -> None:
         other = load_default("harmonic_drive", law).with_values(GIVEN, "user", "test")
         bench = make_test_rig(SPRING, other)
         for held in (0.2, 1.0, 5.0):
-            carried = held / abs(bench.ratio)
+            carried = held / abs(bench.speed_ratio)
             expected = carried / (1.12 * carried + 0.02 + 0.01 * math.exp(-400.0) + 0.02)
             # |tau| is smooth: tanh(0.2/0.1)
             assert bench.efficiency(100.0, held) == pytest.approx(expected, rel=1e-2), (law, held)
@@ -221,12 +221,12 @@ def test_part_load_of_worked_examples_from_the_efficiency_at_rated_torque(drive)
 
 def made(name, **options):
     return NEW_JOINT_COMMAND.make_joint(
-        dict.fromkeys(o.name for o in NEW_JOINT_COMMAND.options) | {"catalogue": name} | options
-    ).file
+        dict.fromkeys(o.name for o in NEW_JOINT_COMMAND.command_options) | {"catalogue": name} | options
+    ).parameter_file
 
 
 def rows_of(name, **options):
-    return {row.name: row for row in compare_with_catalogue(SPRING, made(name, **options))}
+    return {row.quantity_name: row for row in compare_with_catalogue(SPRING, made(name, **options))}
 
 
 def test_the_page_has_what_is_published_of_the_drive(tmp_path):
@@ -241,7 +241,9 @@ def test_the_page_has_what_is_published_of_the_drive(tmp_path):
     assert all(roles[name] == ROLE_PARAMETER_SOURCE for name in set_by_it)
     assert roles["lost_motion"] == ROLE_PREDICTED
     assert roles["hysteresis_loss"] == ROLE_INDEPENDENT
-    assert all(rows[name].computed == pytest.approx(rows[name].published, rel=1e-6) for name in turned)
+    assert all(
+        rows[name].computed_value == pytest.approx(rows[name].published_value, rel=1e-6) for name in turned
+    )
     assert {"lost_motion", "hysteresis_loss"} == {name for name, row in rows.items() if row.is_upper_limit}
     measured = rows_of("RT1-H-17-100", starting_torque="0.04", back_driving_torque="5")
     assert measured["starting_torque"].role == measured["back_driving_torque"].role == ROLE_PREDICTED
@@ -269,7 +271,7 @@ def test_printed_numbers_from_those_of_the_other_drives():
     found = list(leave_one_out())
     assert len(found) == 20
     assert sum(not f.interval_low <= printed <= f.interval_high for *_, printed, f in found) <= 2
-    miss = {name: np.log(f.value / p) for name, what, p, f in found if what == "starting torque"}
+    miss = {name: np.log(f.central_value / p) for name, what, p, f in found if what == "starting torque"}
     assert len(miss) == 6
     assert max(map(abs, miss.values())) < np.log(1.25)
     logs = {name: np.log(drive.starting_torque) for name, drive in DRIVES.items()}
@@ -285,13 +287,16 @@ def test_the_law_is_the_stated_one():
     ]
     drives += [PublishedFriction(D, 100.0, 2e-6 * D**2.5, 1.5e-5 * D**3, 0.1, 0.05) for D in (17.0, 32.0)]
     law = scale_friction(40.0, 50.0, tuple(drives))
-    assert law.starting_torque.value == pytest.approx(2.0 * 2e-6 * 40.0**2.5, rel=1e-9)
-    assert law.viscous_torque.value == pytest.approx(1.5e-5 * 40.0**3 - 2e-6 * 40.0**2.5, rel=1e-9)
+    assert law.starting_torque.central_value == pytest.approx(2.0 * 2e-6 * 40.0**2.5, rel=1e-9)
+    assert law.viscous_torque.central_value == pytest.approx(1.5e-5 * 40.0**3 - 2e-6 * 40.0**2.5, rel=1e-9)
     assert (law.starting_torque.interval_low, law.viscous_torque.interval_high) == (
-        pytest.approx(law.starting_torque.value, rel=1e-9),
-        pytest.approx(law.viscous_torque.value, rel=1e-9),
+        pytest.approx(law.starting_torque.central_value, rel=1e-9),
+        pytest.approx(law.viscous_torque.central_value, rel=1e-9),
     )
-    assert (law.load_loss.value, law.load_loss_back.value) == (pytest.approx(0.1), pytest.approx(0.05))
+    assert (law.load_loss.central_value, law.load_loss_back.central_value) == (
+        pytest.approx(0.1),
+        pytest.approx(0.05),
+    )
 
 
 @pytest.mark.slow
@@ -301,15 +306,15 @@ def test_every_drive_has_friction_and_says_from_where():
     The back-driving torque of CSF-17-100 would give a negative loss, which is set to zero.
     """
     for item in catalogue.list_drives():
-        drive = made(item.name)
+        drive = made(item.joint_name)
         for name in ("friction_coulomb", "load_loss", "load_loss_back"):
-            assert drive.values_by_name[name] > 0.0 or item.name == "CSF-17-100"
-            number = item.numbers["starting_torque"]
+            assert drive.values_by_name[name] > 0.0 or item.joint_name == "CSF-17-100"
+            number = item.known_numbers["starting_torque"]
             assert "Harmonic Drive" in drive.sources[name] or "Schaeffler" in drive.sources[name]
-        if number.origin == "estimate":
+        if number.value_origin == "estimate":
             assert drive.origins["friction_coulomb"] == "estimate"
             assert "95 % interval" in drive.sources["friction_coulomb"]
-            assert number.interval[0] < number.value < number.interval[1]
+            assert number.estimate_interval[0] < number.si_value < number.estimate_interval[1]
 
 
 def test_drag_and_temperature(tmp_path, capsys):
@@ -322,25 +327,28 @@ def test_drag_and_temperature(tmp_path, capsys):
     assert file.start_value("temperature") == pytest.approx(318.15)
     at_rest = dry_friction_factor(file.values, 318.15) * file.values.friction_coulomb
     assert f"starting_torque    {at_rest:.4g} N.m  at the wave generator, at 45 degrees C" in out
-    found = rated_efficiency(file.values, 318.15)
+    found = compute_rated_efficiency(file.values, 318.15)
     assert f"efficiency         {found:.4g}  at rated torque and 2000 rev/min, at 45 degrees C" in out
     warm = make_test_rig(SPRING, file)
     assert warm.efficiency(CATALOGUE_MOTOR_SPEED, file.values.rated_torque) == pytest.approx(found, rel=1e-6)
     kelvin = made("CSG-25-100", temperature="318.15K")
     assert kelvin.inputs == file.inputs
-    bare = dict.fromkeys(o.name for o in NEW_JOINT_COMMAND.options) | {"motor_drag": "0.02", "ratio": "100"}
+    bare = dict.fromkeys(o.name for o in NEW_JOINT_COMMAND.command_options) | {
+        "motor_drag": "0.02",
+        "ratio": "100",
+    }
     bare |= {"K1": "4700", "K2": "6100", "K3": "7100", "T1": "2", "T2": "6.9"}
-    assert NEW_JOINT_COMMAND.make_joint(bare).file.values.friction_coulomb == 0.02
+    assert NEW_JOINT_COMMAND.make_joint(bare).parameter_file.values.friction_coulomb == 0.02
 
 
 def test_uncertainty_takes_the_interval_of_the_source(tmp_path):
     file = made("CSG-25-100", motor_drag="0.01")
-    (found,) = state_problem(file, {"friction_coulomb": "interval"}, None, 5).uncertain_parameters
-    number = catalogue.find_drive("CSG-25-100").numbers["starting_torque"]
-    assert found.support == pytest.approx([end + 0.01 for end in number.interval], rel=1e-3)
+    (found,) = define_joint_study(file, {"friction_coulomb": "interval"}, None, 5).uncertain_parameters
+    number = catalogue.find_drive("CSG-25-100").known_numbers["starting_torque"]
+    assert found.support_interval == pytest.approx([end + 0.01 for end in number.estimate_interval], rel=1e-3)
     assert load_again(file, tmp_path).sources == file.sources
     with pytest.raises(ValueError, match="ratio = interval: its source states none"):
-        state_problem(file, {"ratio": "interval"}, None, 5)
+        define_joint_study(file, {"ratio": "interval"}, None, 5)
 
 
 def load_again(file, tmp_path):

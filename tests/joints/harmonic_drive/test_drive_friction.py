@@ -56,7 +56,7 @@ def test_friction_builds_up_as_that_of_dahl():
         "tau_friction"
     ]
     dahl = 0.05 * (1.0 - np.exp(-phi1 / PRESLIDING))
-    assert np.max(np.abs(found - dahl)) < 0.01 * 0.05  # as `FRICTION_SLIDERS` says
+    assert np.max(np.abs(found - dahl)) < 0.01 * 0.05  # as `FRICTION_SLIDER_COUNT` says
     assert found[-1] == pytest.approx(0.05, rel=ROUND_OFF)
 
 

@@ -19,7 +19,7 @@ from test_modelica import COMMITTED, EXACT, STAND_IN, move, simulate, top
 
 from jointfmu.joints.harmonic_drive.drive import DriveParameters
 from jointfmu.joints.harmonic_drive.friction import (
-    FRICTION_SLIDERS,
+    FRICTION_SLIDER_COUNT,
     REFERENCE_TEMPERATURE,
     SLIDER_LIMIT_SHARES,
     friction_limits,
@@ -383,10 +383,10 @@ def test_the_component_has_the_packages_sliders():
     rows = re.search(r"brakes\[:, 2\]=\[(.*?)\]", text, re.DOTALL)
     assert rows
     shares = np.array([[float(x) for x in row.split(",")] for row in rows[1].split(";")])
-    assert shares.shape == (FRICTION_SLIDERS, 2)
+    assert shares.shape == (FRICTION_SLIDER_COUNT, 2)
     # as Dahl's law at the places between which each slider gives way
     assert np.cumsum(shares[::-1, 0])[::-1] == pytest.approx(
-        (np.arange(FRICTION_SLIDERS, 0, -1) / FRICTION_SLIDERS) ** 2, rel=1e-9
+        (np.arange(FRICTION_SLIDER_COUNT, 0, -1) / FRICTION_SLIDER_COUNT) ** 2, rel=1e-9
     )
     assert shares.sum(axis=0) == pytest.approx([1.0, 1.0], rel=1e-9)
 

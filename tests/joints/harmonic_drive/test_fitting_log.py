@@ -32,12 +32,14 @@ WARM = "temperature=temperature_degC [degC]"
 @pytest.fixture
 def drive(tmp_path):
     """Parameter file of a drive like that of the robot."""
-    given = dict.fromkeys(o.name for o in NEW_JOINT_COMMAND.options) | {
+    given = dict.fromkeys(o.name for o in NEW_JOINT_COMMAND.command_options) | {
         "catalogue": "CSG-25-100",
         "fixed": "flexspline",
     }
     path = tmp_path / "drive.toml"
-    path.write_text(format_parameter_file(NEW_JOINT_COMMAND.make_joint(given).file), encoding="utf-8")
+    path.write_text(
+        format_parameter_file(NEW_JOINT_COMMAND.make_joint(given).parameter_file), encoding="utf-8"
+    )
     return path
 
 
@@ -104,8 +106,8 @@ def test_a_load_that_is_measured_gives_the_losses(tmp_path):
     for name in ("friction_coulomb", "friction_stribeck", "friction_viscous", "load_loss", "load_loss_back"):
         assert found.parameters.values_by_name[name] == pytest.approx(TRUE_VALUES[name], rel=1e-3)
     assert any("viscous_temperature_coefficient" in note for note in found.notes)
-    figure = Figure(outcome.figure_size(found), layout="constrained")
-    outcome.draw_fit(figure, found)
+    figure = Figure(outcome.fit_figure_size(found), layout="constrained")
+    outcome.draw_fit_plots(figure, found)
     figure.draw_without_rendering()
     legend, data = figure.axes[0].get_legend().get_window_extent(), figure.axes[0].get_window_extent()
     assert legend.y0 >= data.y1  # beside the curves
@@ -178,7 +180,7 @@ MISSING = np.where(np.arange(4001) == 7, np.nan, 0.1)
     ("given", "text"),
     [
         ({"q": ("rad", 0.0 * TIME), "dq": ("rad/s", 0.0 * TIME)}, "has no motion"),
-        ({"q": None, "dq": ("rad/s", 1.0 + 0.0 * TIME)}, "has one speed alone"),
+        ({"q": None, "dq": ("rad/s", 1.0 + 0.0 * TIME)}, "the speed varies only from"),
         ({"q": ("rad", np.degrees(np.sin(2.0 * TIME)))}, "likely one of them is in degrees"),
         ({"q": ("rad", np.degrees(np.sin(2.0 * TIME))), "dq": None}, "likely angles are in degrees"),
         ({"tau": None, "i": ("A", 1e4 + 0.0 * TIME)}, "a current of 1e+04 A is outside [-1000, 1000] A"),
@@ -206,7 +208,10 @@ def test_a_log_that_cannot_be_is_refused(drive, tmp_path, capsys, given, text):
         (["--ratio", "100"], "the log does not state the drive; expected --params FILE, --drive NAME"),
         (["--rated-torque", "87"], "rated torque = 87 N.m does not state the ratio; state both (--ratio)"),
         ([*DRIVE, "--rated-torque", "87"], "--drive and --rated-torque both state the drive"),
-        ([*DRIVE, "--columns", "speed=x"], "expected NAME=HEADING with one of time, q, dq"),
+        (
+            [*DRIVE, "--columns", "speed=x"],
+            "a heading of the file and a NAME of time, q, dq",
+        ),
         ([*DRIVE, "--columns", "dq=x"], "has no column 'x' for dq; it has time, q, dq, tau"),
         ([*DRIVE, "--free", "K9"], "'K9' is not a parameter to fit"),
         ([*DRIVE, "--free", "K1"], "K1 needs the columns q and q_motor in addition to time"),
@@ -288,8 +293,8 @@ CONSTANT, ROTOR = 0.21, 1.7e-4
 
 
 def size_32_file():
-    given = dict.fromkeys(o.name for o in NEW_JOINT_COMMAND.options) | {"catalogue": "CSG-32-100"}
-    return NEW_JOINT_COMMAND.make_joint(given).file
+    given = dict.fromkeys(o.name for o in NEW_JOINT_COMMAND.command_options) | {"catalogue": "CSG-32-100"}
+    return NEW_JOINT_COMMAND.make_joint(given).parameter_file
 
 
 def joint_columns():
@@ -450,7 +455,7 @@ def test_a_long_log_starts_from_a_part_of_its_samples(monkeypatch, tmp_path):
     """The first fit uses every fourth sample; the second fit starts from it and gives the same result."""
     path = save_log(tmp_path / "log.csv", sensor_log(), "time", "q", "dq", "i", "link_torque")
     whole = log.fit([path], size_32_file(), torque_constant=CONSTANT)
-    monkeypatch.setattr(log_friction, "FIRST_FIT_SAMPLES", 80)
+    monkeypatch.setattr(log_friction, "FIRST_FIT_SAMPLE_COUNT", 80)
     found = log.fit([path], size_32_file(), torque_constant=CONSTANT)
     for name in SENSOR:
         assert found.solution.values[name] == pytest.approx(whole.solution.values[name], rel=1e-3)
@@ -526,7 +531,7 @@ def rippled_log(ratio, **ripple):
     q, dq = 0.3 * log_columns["q"], 0.3 * log_columns["dq"]
     load = 2.5 * np.gradient(dq, 0.01) + 110.0 * np.cos(q)
     ripple_torque, _ = friction_ripple(drive, ratio * q)
-    positive, negative = friction_limits(drive, abs(ratio) * dq, -load, ripple=ripple_torque)
+    positive, negative = friction_limits(drive, abs(ratio) * dq, -load, ripple_torque=ripple_torque)
     torque = np.where(dq > 0.0, positive, -negative) + viscous_torque(drive, abs(ratio) * dq)
     current = (torque + load / abs(ratio) + ROTOR * abs(ratio) * np.gradient(dq, 0.01)) / CONSTANT
     return {"time": log_columns["time"], "q": q, "dq": dq, "i": current + 0.02 * rng.standard_normal(q.size)}

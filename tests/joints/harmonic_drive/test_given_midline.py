@@ -11,7 +11,7 @@ from jointfmu_tools.common.pressure import judge_joint_stiffness
 from jointfmu_tools.joints.harmonic_drive import catalogue
 from jointfmu_tools.joints.harmonic_drive.new import NEW_JOINT_COMMAND
 from jointfmu_tools.studies.uncertainty import propagate
-from jointfmu_tools.studies.uncertainty.problem import state_problem
+from jointfmu_tools.studies.uncertainty.problem import define_joint_study
 from scipy.interpolate import PchipInterpolator
 
 from jointfmu.joints import KINDS
@@ -47,8 +47,8 @@ def drive(**changes):
 
 def named(name):
     return NEW_JOINT_COMMAND.make_joint(
-        dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.options) | {"catalogue": name}
-    ).file
+        dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.command_options) | {"catalogue": name}
+    ).parameter_file
 
 
 def name_of(row):
@@ -66,7 +66,7 @@ def test_every_row_keeps_its_angles(row):
     K = {
         n: float(row[k]) for n, k in (("K1", "K1_Nm_per_rad"), ("K2", "K2"), ("T1", "T1_Nm"), ("T2", "T2_Nm"))
     }
-    K["K3"] = catalogue.find_drive(name_of(row)).numbers["K3"].value
+    K["K3"] = catalogue.find_drive(name_of(row)).known_numbers["K3"].si_value
     d = named(name_of(row)).values
     spring = HarmonicDriveSpring.tabulate(d)
     for T in (d.T1, d.T2, d.rated_torque, d.max_torque, -d.rated_torque):
@@ -75,7 +75,7 @@ def test_every_row_keeps_its_angles(row):
         )
     T = np.linspace(0.0, 1.5 * d.max_torque, 3001)[1:]
     phi = lines(T, **K)
-    away = np.all([np.abs(phi / corner - 1.0) > d.corner for corner in d.corner_angles], axis=0)
+    away = np.all([np.abs(phi / corner - 1.0) > d.corner for corner in d.corner_wind_ups], axis=0)
     state = spring.evaluate_torque(T)
     np.testing.assert_allclose(state["phi_rel"], phi, rtol=STATED)
     np.testing.assert_allclose(state["phi_rel"][away], phi[away], rtol=SAME)
@@ -218,8 +218,8 @@ def test_a_table_is_odd_and_goes_on_with_its_last_stiffness():
         ((1.0, 3.0, 2.0), (1e-4, 2e-4, 3e-4), r"table.torque\[2\] = 2 N.m is outside \(3, inf\)"),
         ((1.0, 2.0, 3.0), (1e-4, 2e-4, 2e-4), r"table.angle\[2\] = 0.0002 rad is outside \(0.0002, inf\)"),
         ((0.0, 2.0), (1e-4, 2e-4), r"torque\[0\] = 0 N.m is outside \(0, inf\)"),
-        ((1.0, 2.0), (1e-4,), "have 2 and 1 points, allowed is 2 to 1000"),
-        ((1.0,), (1e-4,), "have 1 and 1 points"),
+        ((1.0, 2.0), (1e-4,), "have 2 and 1 numbers; expected the same number, from 2 to 1000"),
+        ((1.0,), (1e-4,), "have 1 and 1 numbers"),
     ],
 )
 def test_tables_that_do_not_rise_are_refused(torque, angle, text):
@@ -244,7 +244,7 @@ def test_files_are_read_and_written(law, tmp_path):
 def test_a_file_without_an_interface_says_so(law, capsys):
     path = KINDS["harmonic_drive"].default_file(law)
     line = refused_line(capsys, "law", "hu2023", "--pressure", "1e6", "--params", path)
-    assert f"law = {law!r} is of no interface" in line
+    assert f"law = {law!r} is not the law of an interface" in line
 
 
 @pytest.mark.slow
@@ -256,12 +256,12 @@ def test_a_file_without_an_interface_says_so(law, capsys):
     ],
 )
 def test_uncertainty(law, given):
-    task = state_problem(load_default("harmonic_drive", law), given, None, 33)
-    points = propagate.sample_designs(task, 64, 5)[0]
-    assert propagate.compute_bands(task, points).refused_samples.count == 0
-    file = task.evaluator.file
-    for settings in task.list_runs(points)[:4]:
-        columns = task.evaluator.evaluate(settings)
+    task = define_joint_study(load_default("harmonic_drive", law), given, None, 33)
+    points = propagate.draw_independent_point_sets(task, 64, 5)[0]
+    assert propagate.compute_bands(task, points).refused_samples.refused_count == 0
+    file = task.run_evaluator.parameter_file
+    for settings in task.list_run_settings(points)[:4]:
+        columns = task.run_evaluator.evaluate_sample(settings)
         values = {k: v for k, v in settings.items() if k != "tau"}
         drive = build_parameter_set(type(file.values), {**file.values_by_name, **values})
         exact = HarmonicDriveSpring.tabulate(replace(drive, hysteresis_loss=0.0)).evaluate_torque(
@@ -290,7 +290,7 @@ def test_tuned_parameters_are_those_of_the_law():
 
 
 def test_names_stand_for_the_rows():
-    assert {name_of(row) for row in ROWS} <= {item.name for item in catalogue.list_drives()}
+    assert {name_of(row) for row in ROWS} <= {item.joint_name for item in catalogue.list_drives()}
 
 
 def test_lost_motion_adds_to_the_lines_and_a_measured_curve_has_it_already():
@@ -305,8 +305,10 @@ def test_lost_motion_adds_to_the_lines_and_a_measured_curve_has_it_already():
     slope = 1e-4 * (1.0 - np.tanh(T / (0.01 * rated)) ** 2) / (0.01 * rated)
     assert 1.0 / found["K_WTS"] == pytest.approx(1.0 / before["K_WTS"] + slope, rel=1e-5)
     with pytest.raises(
-        ValueError, match=r"^lost_motion = 0.0002 rad is outside \[0, 0\]: a measured midline"
+        ValueError, match=r"^lost_motion = 0.0002 rad is outside \[0, 0\]: the measured midline"
     ):
         replace(load_default("harmonic_drive", "table").values, lost_motion=2e-4)
-    with pytest.raises(ValueError, match=r"^lost_motion = 0.0002 rad is outside \[0, 0\]: T1 must be above"):
+    with pytest.raises(
+        ValueError, match=r"^lost_motion = 0.0002 rad is outside \[0, 0\]: with lost motion, T1 must be above"
+    ):
         drive(lost_motion=2e-4, rated_torque=1e3)

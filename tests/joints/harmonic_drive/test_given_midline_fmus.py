@@ -48,8 +48,8 @@ def file_of(name: str) -> ParameterFile:
     """Parameter file: CSG-17-100, or the shipped table."""
     if name == "table":
         return load_default("harmonic_drive", name)
-    given = dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.options)
-    file: ParameterFile = NEW_JOINT_COMMAND.make_joint(given | {"catalogue": "CSG-17-100"}).file
+    given = dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.command_options)
+    file: ParameterFile = NEW_JOINT_COMMAND.make_joint(given | {"catalogue": "CSG-17-100"}).parameter_file
     return file
 
 
@@ -202,7 +202,7 @@ def drives(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
     def make(out: Path) -> None:
         for alias, file in FILES.items():
-            build_fmus(["HarmonicDriveCompliance"], list(FLAVOUR_BUILDERS), file, out, alias=alias)
+            build_fmus(["HarmonicDriveCompliance"], list(FLAVOUR_BUILDERS), file, out, fmu_alias=alias)
 
     return made_once(tmp_path_factory, "named drives", make)
 

@@ -12,12 +12,12 @@ from jointfmu.contact.laws.hu2023 import critical_area
 from jointfmu.joints import KINDS
 from jointfmu.joints.harmonic_drive.law import (
     HarmonicDriveParameters,
+    contact_pair_stiffness,
     drive_stiffness,
-    pair_stiffness,
     peak_pressure,
 )
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring, torque_curve
-from jointfmu.mechanics.curve import MAX_ERROR
+from jointfmu.mechanics.curve import MAX_INTERPOLATION_ERROR
 from jointfmu.parameters import load_default, load_parameter_file
 from jointfmu.quantity import build_parameter_set, flatten_parameters
 
@@ -87,7 +87,7 @@ def test_derivatives_of_the_stiffness(it):
     """dK_TS/dT and dK_WTS/dT agree with central differences for both laws."""
     T = np.array([0.02, 0.3, 2.0, 5.0, 11.0])
     h = 1e-3 * np.hypot(T, it.torque_smoothing)
-    for law in (pair_stiffness, drive_stiffness):
+    for law in (contact_pair_stiffness, drive_stiffness):
         value, slope = law(it, T)
         around = law(it, T + h * FIVE[:, None])[0]
         # the law is smooth over h: (h/T)^4 of truncation, and the same sum's round-off eps/h
@@ -102,7 +102,7 @@ def test_eq_46(it):
     """The stiffness obeys Eq. 46: 1/K_WTS = 1/K_FTS + 1/K_TS."""
     T = np.array([0.0, 0.5, 3.0, 12.0])
     total = drive_stiffness(it, T)[0]
-    contact = pair_stiffness(it, T)[0]
+    contact = contact_pair_stiffness(it, T)[0]
     np.testing.assert_allclose(1.0 / total, 1.0 / it.K_FTS0 + 1.0 / contact, rtol=1e-14)  # round-off
     np.testing.assert_array_equal(drive_stiffness(it, -T)[0], total)
 
@@ -120,11 +120,11 @@ def test_printed_equations():
     psi = 5.454 * np.exp((1.0 - s.D) / 0.628) + 1.499
     K_N = (s.D - 1) / (0.5 * s.D - 1) * E / np.sqrt(np.pi) * psi ** (1.5 - 0.5 * s.D) * root
     K_T = 4.0 * shear / E * (1.0 - DRIVE.traction_ratio) ** (1.0 / 3.0) * K_N
-    state = evaluate_at_pressure(DRIVE.pair_law, P)
+    state = evaluate_at_pressure(DRIVE.contact_pair_law, P)
     np.testing.assert_allclose(state["K_N"], K_N, rtol=1e-12)  # round-off
     np.testing.assert_allclose(state["K_T"], K_T, rtol=1e-12)
     np.testing.assert_allclose(state["F"], P * DRIVE.node_area, rtol=1e-12)
-    found = pair_stiffness(DRIVE, T)[0] / DRIVE.drive_scale
+    found = contact_pair_stiffness(DRIVE, T)[0] / DRIVE.drive_scale
     np.testing.assert_allclose(found, DRIVE.A_0 / DRIVE.node_area * K_T * 2.0 * DRIVE.radius, rtol=1e-12)
 
 
@@ -133,7 +133,7 @@ def test_roughness_has_no_scale():
     it, T = SETS["rough"], np.array([0.0, 1.0, 5.0, 25.0])
     p = it.mean_over_peak * peak_pressure(it, T)[0]
     expected = evaluate_at_pressure(it.law, p)["K_T"] * it.radius**2
-    np.testing.assert_allclose(pair_stiffness(it, T)[0], expected, rtol=1e-12)  # round-off
+    np.testing.assert_allclose(contact_pair_stiffness(it, T)[0], expected, rtol=1e-12)  # round-off
     assert HarmonicDriveSpring.tabulate(it).evaluate_torque(5.0)["K_TS_pair"] == pytest.approx(
         expected[2], rel=1e-6
     )
@@ -158,20 +158,22 @@ def test_beyond_rated_torque_the_stiffness_settles():
 
 def test_published_stiffness():
     """Hu 2023: K_TS of sections 3.2 and 3.4, K_WTS of sections 3.1 and 4; all fitted, to 1e-8."""
-    assert float(pair_stiffness(DRIVE, 5.0)[0]) == pytest.approx(4.0 * 1820.44, rel=1e-8)
+    assert float(contact_pair_stiffness(DRIVE, 5.0)[0]) == pytest.approx(4.0 * 1820.44, rel=1e-8)
     best = replace(DRIVE, radial_deformation=0.21e-3)
-    assert float(pair_stiffness(best, 5.0)[0]) == pytest.approx(4.0 * 1940.49, rel=1e-8)
+    assert float(contact_pair_stiffness(best, 5.0)[0]) == pytest.approx(4.0 * 1940.49, rel=1e-8)
     assert drive_stiffness(DRIVE, np.array([0.5, 5.0]))[0] == pytest.approx([2524.92, 5294.0], rel=1e-8)
 
 
 @pytest.mark.parametrize("torque", [0.0, 1.0, 3.0, 5.0])
 def test_eccentricity_and_deformation_lower_the_stiffness(torque):
     offsets = np.linspace(0.0, 5e-5, 6)
-    eccentric = [float(pair_stiffness(replace(DRIVE, eccentricity=e), torque)[0]) for e in offsets]
+    eccentric = [float(contact_pair_stiffness(replace(DRIVE, eccentricity=e), torque)[0]) for e in offsets]
     assert np.all(np.diff(eccentric) < 0.0)
     for sign in (-1.0, 1.0):
         ws = DRIVE.optimum_deformation + sign * np.linspace(0.0, 2.5e-5, 6)
-        deformed = [float(pair_stiffness(replace(DRIVE, radial_deformation=w), torque)[0]) for w in ws]
+        deformed = [
+            float(contact_pair_stiffness(replace(DRIVE, radial_deformation=w), torque)[0]) for w in ws
+        ]
         assert np.all(np.diff(deformed) < 0.0)
 
 
@@ -181,7 +183,7 @@ def test_softer_body_is_the_one_that_yields_first():
     assert DRIVE.law.side1.E == swapped.law.side1.E == DRIVE.flexspline.E
     assert DRIVE.law.side2.nu == swapped.law.side2.nu == DRIVE.bearing.nu
     assert DRIVE.law.sigma_y == swapped.law.sigma_y == DRIVE.flexspline.sigma_y
-    assert pair_stiffness(swapped, 5.0) == pair_stiffness(DRIVE, 5.0)
+    assert contact_pair_stiffness(swapped, 5.0) == contact_pair_stiffness(DRIVE, 5.0)
     hard = drive(flexspline__sigma_y=2.5e9)
     assert hard.law.sigma_y == DRIVE.bearing.sigma_y
     assert hard.law.side1.E == DRIVE.bearing.E
@@ -192,26 +194,26 @@ def test_softer_body_is_the_one_that_yields_first():
 
 @each_drive
 def test_windup_is_the_integral_of_dT_over_K(it, springs):
-    """The wind-up agrees with adaptive quadrature of 1/K_WTS from zero, to MAX_ERROR."""
+    """The wind-up agrees with adaptive quadrature of 1/K_WTS from zero, to MAX_INTERPOLATION_ERROR."""
     curve = next(spring.curve for spring in springs.values() if spring.joint is it)
     torques = [0.0, 0.2 * it.torque_smoothing, it.torque_smoothing, 0.5, 5.0, it.max_torque]
     phi = 0.0
     for low, high in pairwise(torques):
         phi += quad(lambda T: 1.0 / float(drive_stiffness(it, T)[0]), low, high, epsabs=0.0, epsrel=1e-10)[0]
-        assert float(curve.inverse(high)) == pytest.approx(phi, rel=MAX_ERROR)
+        assert float(curve.inverse(high)) == pytest.approx(phi, rel=MAX_INTERPOLATION_ERROR)
         load, stiffness = curve.derivatives(phi, 1)
-        assert load == pytest.approx(high, rel=MAX_ERROR)
-        assert stiffness == pytest.approx(float(drive_stiffness(it, high)[0]), rel=MAX_ERROR)
+        assert load == pytest.approx(high, rel=MAX_INTERPOLATION_ERROR)
+        assert stiffness == pytest.approx(float(drive_stiffness(it, high)[0]), rel=MAX_INTERPOLATION_ERROR)
 
 
 @pytest.mark.slow
 @each_drive
 def test_table_follows_the_law_between_its_nodes(it, springs):
     curve = next(spring.curve for spring in springs.values() if spring.joint is it)
-    assert curve.interpolation_error <= MAX_ERROR
+    assert curve.interpolation_error <= MAX_INTERPOLATION_ERROR
     x = curve.displacement
     T, K = curve.derivatives((x[:-1] + np.linspace(0.0, 1.0, 8)[:, None] * np.diff(x)).ravel(), 1)
-    np.testing.assert_allclose(K, drive_stiffness(it, T)[0], rtol=MAX_ERROR)
+    np.testing.assert_allclose(K, drive_stiffness(it, T)[0], rtol=MAX_INTERPOLATION_ERROR)
     assert np.all(np.diff(curve.load) > 0.0)
     assert curve.end_point[1] == pytest.approx(it.max_torque, rel=1e-12)  # sinh of asinh
     assert (x[0], curve.load[0]) == (0.0, 0.0)
@@ -225,8 +227,10 @@ def test_spots_that_would_yield_are_refused(side):
         torque_curve(it)
     least = float(str(error.value).split("(")[1].split(",")[0])
     edge = drive(**{f"{side}__sigma_y": least})
-    ends = evaluate_at_pressure(edge.pair_law, peak_pressure(edge, edge.max_torque)[0])["largest_spot"]
-    assert ends == pytest.approx(critical_area(edge.pair_law), rel=1e-5)  # six digits of the message
+    ends = evaluate_at_pressure(edge.contact_pair_law, peak_pressure(edge, edge.max_torque)[0])[
+        "largest_spot"
+    ]
+    assert ends == pytest.approx(critical_area(edge.contact_pair_law), rel=1e-5)  # six digits of the message
 
 
 @pytest.mark.parametrize(
@@ -249,7 +253,7 @@ def test_tables_of_other_drives(D, r_m, traction, eccentricity, K_FTS0, smoothin
         torque_smoothing=smoothing,
     )
     curve = torque_curve(it)
-    assert curve.interpolation_error <= MAX_ERROR
+    assert curve.interpolation_error <= MAX_INTERPOLATION_ERROR
     assert np.all(np.diff(curve.load) > 0.0)
     assert np.all(np.diff(curve.stiffness) > 0.0)
     assert curve.stiffness_slope_start[0] == 0.0
@@ -326,9 +330,9 @@ def test_eq_46_of_the_outputs(spring):
     np.testing.assert_array_equal(out["K_FTS"], DRIVE.K_FTS0)
     np.testing.assert_allclose(out["K_TS_pair"] * DRIVE.drive_scale, out["K_TS"], rtol=4 * EPS)
     inside = np.abs(out["tau"]) < DRIVE.max_torque
-    expected = pair_stiffness(DRIVE, out["tau"][inside])[0]
-    # MAX_ERROR of K_WTS, amplified K_TS/K_WTS <= 2 in the difference
-    np.testing.assert_allclose(out["K_TS"][inside], expected, rtol=4 * MAX_ERROR)
+    expected = contact_pair_stiffness(DRIVE, out["tau"][inside])[0]
+    # MAX_INTERPOLATION_ERROR of K_WTS, amplified K_TS/K_WTS <= 2 in the difference
+    np.testing.assert_allclose(out["K_TS"][inside], expected, rtol=4 * MAX_INTERPOLATION_ERROR)
     np.testing.assert_allclose(out["p_max"], peak_pressure(DRIVE, out["tau"])[0], rtol=1e-14)  # round-off
 
 
@@ -371,11 +375,11 @@ def test_closed_cycle_returns_its_energy(spring):
     turns = [0.0, 4e-3, -2e-3, 1e-3, -4.5e-3, 0.0]  # rad, past the end of the table at 4.36e-3
     parts = [energy(spring, a, b, 400 + 37 * i) for i, (a, b) in enumerate(pairwise(turns))]
     # pieces of 1e-5 rad do not end at the nodes, where the third derivative jumps by interpolation
-    # errors: better than MAX_ERROR of the energy
-    assert sum(parts) == pytest.approx(0.0, abs=MAX_ERROR * max(np.abs(parts)))
+    # errors: better than MAX_INTERPOLATION_ERROR of the energy
+    assert sum(parts) == pytest.approx(0.0, abs=MAX_INTERPOLATION_ERROR * max(np.abs(parts)))
     T = float(still(spring, 4e-3)["tau"])
     expected = quad(lambda t: t / float(drive_stiffness(DRIVE, t)[0]), 0.0, T, epsabs=0.0, epsrel=1e-10)[0]
-    assert parts[0] == pytest.approx(expected, rel=2 * MAX_ERROR)  # of load and of stiffness
+    assert parts[0] == pytest.approx(expected, rel=2 * MAX_INTERPOLATION_ERROR)  # of load and of stiffness
 
 
 def test_damping_dissipates(spring):

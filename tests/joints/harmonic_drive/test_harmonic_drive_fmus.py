@@ -89,7 +89,7 @@ def test_torque_against_the_stiffness_of_the_law_without_a_table(fmu: Host) -> N
 
 
 def test_the_torque_ramp_agrees_with_scipy(fmus: Path) -> None:
-    c = ramp.run_ramp(fmus / "HarmonicDriveCompliance.fmu", "tau", 5.0, 0.01).columns
+    c = ramp.run_ramp(fmus / "HarmonicDriveCompliance.fmu", "tau", 5.0, 0.01).variable_columns
     assert len(c["tau"]) == 501
     # Simpson's rule at 0.01 N.m, a fifth of the length over which the stiffness bends
     phi = cumulative_simpson(1.0 / c["K_WTS"], x=c["tau"], initial=0.0)
@@ -249,7 +249,7 @@ SCRIPT = """(async () => {
 def test_efficiency_is_that_of_the_bench(shown: Browser, ratio: float) -> None:
     given = {"ratio": ratio, "hysteresis_loss": 0.0, "error_2": 0.0, "temperature_factor": 1.3}
     found = shown.run(SCRIPT.replace("GIVEN", str(given)).replace("SPEED", str(SPEED)))
-    example = LABORATORY_MODELS[NAME].example
+    example = LABORATORY_MODELS[NAME].example_values
     assert example
     file = load_default("harmonic_drive").with_values({**example.values, **given}, "user", "a test")
     bench = make_test_rig(MODELS[NAME], file)

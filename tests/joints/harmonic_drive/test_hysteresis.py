@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import quad, solve_ivp
 
 from jointfmu.joints.harmonic_drive import hysteresis
-from jointfmu.joints.harmonic_drive.hysteresis import HISTORY_LAYOUT, HYSTERESIS_SLIDERS
+from jointfmu.joints.harmonic_drive.hysteresis import HISTORY_LAYOUT, HYSTERESIS_SLIDER_COUNT
 from jointfmu.joints.harmonic_drive.law import drive_stiffness
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import load_default
@@ -187,8 +187,8 @@ def along(law, path, memory=None):
 
 def stored(law, memory):
     """Energy [J] stored in the midline and in the sliders."""
-    springs = memory[:HYSTERESIS_SLIDERS] ** 2 / (2.0 * law.hysteresis.stiffness)
-    return float(law.curve.energy(abs(memory[HYSTERESIS_SLIDERS]))) + float(np.sum(springs))
+    springs = memory[:HYSTERESIS_SLIDER_COUNT] ** 2 / (2.0 * law.hysteresis.stiffness)
+    return float(law.curve.energy(abs(memory[HYSTERESIS_SLIDER_COUNT]))) + float(np.sum(springs))
 
 
 # The friction of the theorem
@@ -314,7 +314,7 @@ def test_without_hysteresis_it_is_the_spring_of_the_midline():
     torque, loss, memory = along(law, phi)
     assert np.array_equal(torque, found["tau"])
     assert not np.any(loss)
-    assert not np.any(memory[:HYSTERESIS_SLIDERS])
+    assert not np.any(memory[:HYSTERESIS_SLIDER_COUNT])
     tau = np.linspace(-25.0, 25.0, 41)
     assert np.array_equal(
         law.evaluate_torque(tau)["phi_rel"], np.copysign(law.curve.inverse(np.abs(tau)), tau)
@@ -337,7 +337,9 @@ def test_masings_rule_and_memory_wiped_out_by_the_larger_loop():
     after, _, memory = along(law, [-a], minor)
     assert after == pytest.approx(plain, abs=ROUND_OFF)
     untouched = along(law, [-a], turned)[2]
-    assert memory[:HYSTERESIS_SLIDERS] == pytest.approx(untouched[:HYSTERESIS_SLIDERS], abs=ROUND_OFF)
+    assert memory[:HYSTERESIS_SLIDER_COUNT] == pytest.approx(
+        untouched[:HYSTERESIS_SLIDER_COUNT], abs=ROUND_OFF
+    )
 
 
 def test_ten_times_larger_steps_agree():
@@ -356,12 +358,12 @@ def test_work_is_stored_or_lost_along_random_paths():
     law, rng = spring(), np.random.default_rng(3)
     memory, work, previous = law.initial_history(), 0.0, 0.0
     for end in np.cumsum(rng.normal(0.0, 4e-4, 400)):
-        start = memory[HYSTERESIS_SLIDERS]
+        start = memory[HYSTERESIS_SLIDER_COUNT]
         k, limit, way = law.hysteresis.stiffness, law.hysteresis.friction_limit, end - start
-        slips = start + (np.copysign(limit, way) - memory[:HYSTERESIS_SLIDERS]) / k
+        slips = start + (np.copysign(limit, way) - memory[:HYSTERESIS_SLIDER_COUNT]) / k
         inside = slips[(slips - start) * (slips - end) < 0.0]
         corners = np.sort(np.array([start, *inside, end]))[:: 1 if way > 0.0 else -1]
-        friction = law.hysteresis.advance(memory[: HYSTERESIS_SLIDERS + 2], corners).traction
+        friction = law.hysteresis.advance(memory[: HYSTERESIS_SLIDER_COUNT + 2], corners).traction
         work += float(np.sum(0.5 * (friction[1:] + friction[:-1]) * np.diff(corners)))
         work += float(law.curve.energy(abs(end)) - law.curve.energy(abs(start)))
         out, memory = law.advance_motion((0.0, 0.0, end, 0.0), memory)

@@ -105,10 +105,12 @@ def saved(instance: Fmu) -> bytes:
 def memory_of(instance: Fmu) -> np.ndarray:
     """History after the last accepted inputs, from the end of a native state (snapshot.c)."""
     inputs = sum(v.causality == "input" for v in instance.variables.values())
-    tail = f"<{2 * HISTORY_LAYOUT.size}d{inputs}dIIQ"
+    tail = f"<{2 * HISTORY_LAYOUT.value_count}d{inputs}dIIQ"
     numbers = struct.unpack(tail, saved(instance)[-struct.calcsize(tail) :])
     assert numbers[-2] == 1  # there are accepted inputs
-    return np.array(numbers[: 2 * HISTORY_LAYOUT.size]).reshape(2, HISTORY_LAYOUT.size)[numbers[-3]]
+    return np.array(numbers[: 2 * HISTORY_LAYOUT.value_count]).reshape(2, HISTORY_LAYOUT.value_count)[
+        numbers[-3]
+    ]
 
 
 # The package's numbers

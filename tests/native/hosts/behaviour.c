@@ -76,7 +76,8 @@ static void check_inputs(void)
             library.version == 2 ? "phi = -inf rad is outside (-inf, inf): angle, 100 % of ##it##"
                                  : "phi = -inf rad is outside (-inf, inf): angle, 100 % of #it#");
     set(&fmu, PHI, 1e308);
-    refused(&fmu, fmu_step(&fmu, 1.0), "preload = 3 N, phi = 1e+308 rad: too large, tau is not finite");
+    refused(&fmu, fmu_step(&fmu, 1.0),
+            "preload = 3 N, phi = 1e+308 rad: the inputs are too large, the output tau is not finite");
     set(&fmu, PHI, 42.0);
     refused(&fmu, fmu_step(&fmu, 1.0), "phi = 42 rad is not possible, allowed is any other angle");
     set(&fmu, PHI, 1.0);
@@ -270,9 +271,9 @@ static void check_stop_time(void)
     fmu.time = 3.0;
     refused(&fmu, fmu_step(&fmu, 0.25),
             library.version == 2 ? "fmi2DoStep: the step ends after the stop time at 3 s with step 0.25 s; "
-                                   "expected an end until 3 s"
+                                   "expected an end at or before 3 s"
                                  : "fmi3DoStep: the step ends after the stop time at 3 s with step 0.25 s; "
-                                   "expected an end until 3 s");
+                                   "expected an end at or before 3 s");
     fmu_free(&fmu);
 }
 

@@ -44,7 +44,7 @@ typedef struct {
     X('c', 's', SerializeFMUstate, "bytes of room", (c, state, bytes, size - 1), 23)                         \
     X('c', 's', SerializeFMUstate, "NULL", (c, state, NULL, size), 24)                                       \
     X('c', 's', DeSerializeFMUstate, "bytes; expected", (c, bytes, size - 1, &nothing), 25)                  \
-    X('c', 's', DeSerializeFMUstate, "no state at all", (c, bytes + 1, size, &nothing), 26)                  \
+    X('c', 's', DeSerializeFMUstate, "no FMU state", (c, bytes + 1, size, &nothing), 26)                  \
     X('c', 's', GetDirectionalDerivative, "expected inputs", (c, &out, 1, &parameter, 1, &one, &number), 27) \
     X('c', 's', GetDirectionalDerivative, "expected outputs", (c, &in, 1, &in, 1, &one, &number), 28)        \
     X('c', 's', GetDirectionalDerivative, "not finite", (c, &out, 1, &in, 1, &nan_, &number), 29)            \
@@ -93,7 +93,7 @@ typedef struct {
     X('c', 's', SetFMUState, "NULL", (c, NULL), 22)                                                          \
     X('c', 's', SerializeFMUState, "bytes of room", (c, state, (fmi3Byte *)bytes, size + 1), 23)             \
     X('c', 's', DeserializeFMUState, "bytes; expected", (c, (fmi3Byte *)bytes, 0, &nothing), 24)             \
-    X('c', 's', DeserializeFMUState, "no state at all", (c, (fmi3Byte *)bytes + 1, size, &nothing), 25)      \
+    X('c', 's', DeserializeFMUState, "no FMU state", (c, (fmi3Byte *)bytes + 1, size, &nothing), 25)      \
     X('c', 's', GetDirectionalDerivative, "expected inputs",                                                 \
       (c, &out, 1, &parameter, 1, &one, 1, &number, 1), 26)                                                  \
     X('c', 's', GetDirectionalDerivative, "elements of the seed", (c, &out, 1, &in, 1, &one, 2, &number, 1), \

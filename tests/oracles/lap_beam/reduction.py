@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 from jointfmu_tools.fem.contact import ContactInterface, ContactModel, displacement_matrix
-from jointfmu_tools.fem.elasticity import Cholesky
+from jointfmu_tools.fem.elasticity import CholeskyFactor
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from . import mesh
@@ -50,7 +50,7 @@ class Structure:
     @property
     def symmetric(self):
         """Unknowns of each body that the symmetry fixes."""
-        return tuple(3 * np.flatnonzero(body.nodes[1] < 1e-9) + 1 for body in self.bodies)
+        return tuple(3 * np.flatnonzero(body.node_positions[1] < 1e-9) + 1 for body in self.bodies)
 
     def relative(self, axis):
         """Displacement (P, n) of half 1 relative to half 2 along an axis; along z the approach."""
@@ -64,18 +64,18 @@ class Structure:
     def solve_preload(self, law, preload, gap=None):
         """Solve the frictionless contact under a preload [N] of each bolt; gap [m] at places x, y or None."""
         heads = [f"head{i}" for i in range(len(self.beam.bolts))]
-        pull = [sum(b.uniform_load(b.mesh.boundaries[name]) for name in heads) for b in self.bodies]
+        pull = [sum(b.distribute_unit_force(b.mesh.boundaries[name]) for name in heads) for b in self.bodies]
         loads = [0.5 * preload * sign * load for sign, load in zip((1.0, -1.0), pull, strict=True)]
         first, second = self.symmetric
         slides = 3 * _ends(self.bodies[1])[0]
         held = (np.union1d(first, pinned_unknowns(self.bodies[0])), np.union1d(second, slides))
         model = ContactModel(self.bodies, self.interface, law, gap, fixed_unknowns=held)
         area = self.interface.quadrature_area.sum()
-        return model.solve(loads, 0.5 * preload * len(heads) / area)
+        return model.solve_equilibrium(loads, 0.5 * preload * len(heads) / area)
 
     def stiffness(self, springs):
         """Stiffness matrix [N/m] with springs (P, 3) [N/m3] along x, y and z at the patches."""
-        total = sp.block_diag([body.stiffness for body in self.bodies], format="csr") + self.bolts
+        total = sp.block_diag([body.stiffness_matrix for body in self.bodies], format="csr") + self.bolts
         for axis in AXES:
             opening = self.relative(axis)
             total = total + opening.T @ sp.diags(self.interface.quadrature_area * springs[:, axis]) @ opening
@@ -84,7 +84,7 @@ class Structure:
 
 def _ends(body):
     """Nodes at both ends of a body on the line y = z = 0."""
-    x, y, z = body.nodes
+    x, y, z = body.node_positions
     line = np.flatnonzero((np.abs(y) < 1e-9) & (np.abs(z) < 1e-9))
     return line[np.argmin(x[line])], line[np.argmax(x[line])]
 
@@ -97,14 +97,14 @@ def pinned_unknowns(body):
 
 def patches(interface):
     """Friction patches, one for each element of a contact: mean displacement, area and centroid."""
-    count, points = interface.basis.dx.shape
+    count, points = interface.finite_element_basis.dx.shape
     rows = np.repeat(np.arange(count), points)
     share = sp.csr_matrix((interface.quadrature_area, (rows, np.arange(rows.size))), shape=(count, rows.size))
     area = np.asarray(share.sum(axis=1)).ravel()
     mean = sp.diags(1.0 / area) @ share
     return ContactInterface(
-        interface.basis,
-        interface.nodes,
+        interface.finite_element_basis,
+        interface.node_positions,
         (mean @ interface.interpolation_matrix).tocsr(),
         area,
         mean @ interface.quadrature_position,
@@ -143,10 +143,10 @@ def spectrum(structure, springs, count=3):
     """Frequencies [Hz] and shapes (n, count) of the lowest modes; modal mass of the whole beam 1 kg."""
     free = _free_unknowns(structure)
     stiffness = structure.stiffness(springs)[free][:, free]
-    mass = sp.block_diag([body.mass for body in structure.bodies], format="csr")[free][:, free]
+    mass = sp.block_diag([body.mass_matrix for body in structure.bodies], format="csr")[free][:, free]
     shift = -((2.0 * np.pi * SHIFT) ** 2)
-    factor = Cholesky(stiffness - shift * mass)
-    inverse = LinearOperator(stiffness.shape, matvec=factor.solve, dtype=np.float64)
+    factor = CholeskyFactor(stiffness - shift * mass)
+    inverse = LinearOperator(stiffness.shape, matvec=factor.solve_linear_system, dtype=np.float64)
     start = np.random.default_rng(1).standard_normal(free.size)
     squares, shapes = eigsh(stiffness, k=RIGID + count, M=mass, sigma=shift, OPinv=inverse, v0=start)
     whole = np.zeros((sum(b.unknown_count for b in structure.bodies), count))
@@ -170,7 +170,7 @@ def reduce_beam(structure, law, preload, shear, gap=None):
     gap : [m] of the unloaded faces at places x, y; None: they are plane
     """
     solution = structure.solve_preload(law, preload, gap)
-    normal = solution.stiffness
+    normal = solution.contact_stiffness
     springs = np.stack([shear * normal, shear * normal, normal], axis=1)
     frequencies, shapes = spectrum(structure, springs)
     shape = shapes[:, 0] * np.sign(shapes[_tip(structure), 0])
@@ -192,7 +192,7 @@ def reduce_beam(structure, law, preload, shear, gap=None):
 
 def _tip(structure):
     """Index of the vertical displacement of the left end."""
-    x, y, z = structure.bodies[0].nodes
+    x, y, z = structure.bodies[0].node_positions
     return 3 * int(np.argmin(x + 1e-3 * np.abs(y) + 1e-3 * np.abs(z))) + 2
 
 
@@ -200,11 +200,13 @@ def _compliance(structure, springs):
     """Compliance (3 P, 3 P) [m/N] of the patches for pairs of opposite forces, ordered by patch, then x, y,
     z."""
     free = np.setdiff1d(_free_unknowns(structure), pinned_unknowns(structure.bodies[0]))
-    factor = Cholesky(structure.stiffness(springs)[free][:, free])
+    factor = CholeskyFactor(structure.stiffness(springs)[free][:, free])
     stacked = sp.vstack([structure.relative(axis) for axis in AXES]).tocsr()
     count = stacked.shape[0] // 3
     opening = stacked[np.arange(3 * count).reshape(3, count).T.ravel()][:, free]
     columns = []
     for i in range(0, 3 * count, RIGHT_SIDES_PER_SOLVE):
-        columns.append(opening @ factor.solve(opening[i : i + RIGHT_SIDES_PER_SOLVE].T.toarray()))
+        columns.append(
+            opening @ factor.solve_linear_system(opening[i : i + RIGHT_SIDES_PER_SOLVE].T.toarray())
+        )
     return np.hstack(columns)

@@ -33,10 +33,10 @@ def shanks(beam, bodies):
 
 def _disc(body, facets, at):
     """Mean motion (3, n) of facets: displacement along x, rotation about y, displacement along z."""
-    nodes = np.unique(body.basis.get_dofs(facets=facets).flatten())
-    share = 2.0 - (body.nodes[1, nodes] < 1e-9)
+    nodes = np.unique(body.finite_element_basis.get_dofs(facets=facets).flatten())
+    share = 2.0 - (body.node_positions[1, nodes] < 1e-9)
     share = share / share.sum()
-    lever = body.nodes[0, nodes] - at
+    lever = body.node_positions[0, nodes] - at
     lever = lever - share @ lever
     turn = -share * lever / (share @ lever**2)
     zero = np.zeros_like(nodes)

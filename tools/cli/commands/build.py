@@ -16,33 +16,44 @@ from ...common.pressure import judge_joint_stiffness
 from ..command import CommandResult, SubParsers, declare_argument, declare_command
 from ..outputs import declare_output
 
-MAX_PRINTED_CHANGES = 3
+MAX_PRINTED_START_VALUE_CHANGES = 3
 """Largest number of changed start values that are printed of a replaced FMU; `--json` has all."""
 
 
 def add_command(command_parsers: SubParsers) -> None:
     """Declare the command `jointfmu build` with its options."""
     make = declare_command(command_parsers, "build", _run_build, "build FMUs from default or user parameters")
-    declare_argument(make, "names", str, f"FMUs to build: {', '.join(MODELS)} (default: all)", nargs="*")
+    declare_argument(
+        make,
+        "names",
+        str,
+        f"FMUs to build: {', '.join(MODELS)} (default: all, or those of the joint of --params)",
+        nargs="*",
+    )
     make.add_argument(
         "--flavour",
         nargs="+",
         default=["fmi2", "fmi3"],
         metavar="FLAVOUR",
-        help="flavours to build: fmi2, fmi3 (default: both), python",
+        help="kinds of FMU to build: fmi2, fmi3 (compiled; default: both), python (FMI 2.0, runs Python "
+        "code)",
     )
     text = "model name, identifier and file name of one FMU, for example ShoulderDrive; FMUs with different "
     declare_argument(make, "--name", str, text + "names can be used in one model")
-    declare_argument(make, "--params", Path, "parameter file that replaces the default parameters (TOML)")
+    declare_argument(
+        make, "--params", Path, "parameter file of one joint, in place of its default parameters (TOML)"
+    )
     make.add_argument(
         "--parameters",
         choices=("tunable", "fixed"),
         default="tunable",
         help="whether a tool may change parameters during a run (tunable, the default) or only before it "
-        "(fixed, which OpenModelica imports without warnings); fmi2 and fmi3",
+        "(fixed, which OpenModelica imports without warnings)",
     )
     make.add_argument(
-        "--systems", action="store_true", help="build the example systems (SSP) with the FMUs that they need"
+        "--systems",
+        action="store_true",
+        help="build the shipped systems (SSP archives) with the FMUs that they need",
     )
     declare_output(make, "--out", OUTPUT_FOLDER, "folder to write", default=Path("dist"))
 
@@ -67,7 +78,9 @@ def _run_build(args: argparse.Namespace) -> CommandResult:
             if args.systems:
                 from ...systems import ssp
 
-                built += ssp.build_systems(args.out, None, file, True, args.parameters, pool, args.force)
+                built += ssp.build_system_archives(
+                    args.out, None, file, True, args.parameters, pool, args.force
+                )
     changed = _find_changed_values(built, before)
     joints = dict.fromkeys(MODELS[name].joint for name in args.names or MODELS)
     judgements = {f.joint: judge_joint_stiffness(f) for f in ([file] if file else map(load_default, joints))}
@@ -77,8 +90,12 @@ def _run_build(args: argparse.Namespace) -> CommandResult:
         texts = [
             f"{name} was {old or 'not there'}, is {new or 'gone'}" for name, (old, new) in values.items()
         ]
-        more = f" and {len(texts) - MAX_PRINTED_CHANGES} more" if len(texts) > MAX_PRINTED_CHANGES else ""
-        notes.append(f"replaced {path}: {', '.join(texts[:MAX_PRINTED_CHANGES])}{more}")
+        more = (
+            f" and {len(texts) - MAX_PRINTED_START_VALUE_CHANGES} more"
+            if len(texts) > MAX_PRINTED_START_VALUE_CHANGES
+            else ""
+        )
+        notes.append(f"replaced {path}: {', '.join(texts[:MAX_PRINTED_START_VALUE_CHANGES])}{more}")
     levels = [
         f"{joint}: {line}" for joint, judgement in judgements.items() for line in judgement.format_lines()
     ]
@@ -87,15 +104,15 @@ def _run_build(args: argparse.Namespace) -> CommandResult:
     ]
     return CommandResult(
         json_document={"built": [str(path) for path in built], "replaced": changed, "joints": judged},
-        lines=[*(f"built {path}" for path in built), *levels],
-        notes=notes,
+        output_lines=[*(f"built {path}" for path in built), *levels],
+        stderr_lines=notes,
     )
 
 
-def _read_start_values(path: Path) -> dict[str, str]:
+def _read_start_values(fmu_path: Path) -> dict[str, str]:
     """Read {parameter: start value as text} of an FMU; empty if the file is not an FMU."""
     try:
-        with archives.open_archive(path) as archive:
+        with archives.open_archive(fmu_path) as archive:
             description = ElementTree.fromstring(
                 archives.read_member(archive, archives.MODEL_DESCRIPTION_NAME)
             )
@@ -135,7 +152,9 @@ def add_cache_command(command_parsers: SubParsers) -> None:
     cache = declare_command(
         command_parsers, "cache", _run_cache, "show or clear the cache of compiled FMU code"
     )
-    cache.add_argument("--clear", action="store_true", help="clear the cache; the next build compiles again")
+    cache.add_argument(
+        "--clear", action="store_true", help="delete all files of the cache; the next build compiles again"
+    )
 
 
 def _run_cache(args: argparse.Namespace) -> CommandResult:
@@ -148,7 +167,7 @@ def _run_cache(args: argparse.Namespace) -> CommandResult:
     folder = str(cache.cache_folder())
     return CommandResult(
         json_document={"folder": folder, "files": files, "bytes": size},
-        lines=[
+        output_lines=[
             f"{folder}: {files} files, {size / 1e6:.1f} MB (another folder: "
             f"{cache.CACHE_ENVIRONMENT_VARIABLE})"
         ],

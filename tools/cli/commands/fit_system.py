@@ -9,38 +9,41 @@ from jointfmu.files.outputs import PARAMETER_FILE, PICTURE_FILE
 
 from ...api.system_fit import fit_system
 from ...common import plots
-from ...systems.fit.system_text import check_sections
+from ...systems.fit.system_text import read_document_with_sections
 from ...systems.system import find_system_file, list_system_names
 from ..command import CommandResult, SubParsers, declare_argument, declare_command
 from ..outputs import FORCE_OPTION_HELP, declare_output
 
 
-def add_procedure(procedure_parsers: SubParsers) -> None:
+def add_system_procedure(procedure_parsers: SubParsers) -> None:
     """Declare `jointfmu fit system` with its options."""
     text = "fit parameters of a system to measured time series"
-    sub = declare_command(procedure_parsers, "system", _run_fit, text)
-    text = f"system file with the start values (TOML), or {', '.join(list_system_names())}"
+    sub = declare_command(procedure_parsers, "system", _run_system_fit, text)
+    text = f"system file with the start values (TOML), or a shipped system ({', '.join(list_system_names())})"
     declare_argument(sub, "file", str, text, "FILE")
     text = "measured time series (CSV): time, and columns named as variables of the system, with units"
     declare_argument(sub, "data", Path, text, "DATA")
-    text = "parameters to fit, COMPONENT.PARAMETER; angle or speed of a body: its start value"
+    text = (
+        "parameters to fit, COMPONENT.PARAMETER, as in drive.K1; for angle and speed of a body, the start "
+        "value is fitted"
+    )
     declare_argument(sub, "--free", str, text, nargs="+", required=True)
-    text = "last share of the record to predict instead of fit [1]"
+    text = "share of the record, at its end, that is predicted and not fitted, as in 0.2 [1]"
     declare_argument(sub, "--hold-out", float, text, "SHARE", default=0.0)
-    text = "other headings in the file: NAME=HEADING or 'NAME=HEADING [UNIT]'"
+    text = "headings of DATA that differ from the variables' names: NAME=HEADING or 'NAME=HEADING [UNIT]'"
     declare_argument(sub, "--columns", str, text, "TEXT", nargs="+", default=[])
     text = f"{FORCE_OPTION_HELP}; write the system file even if the fit does not determine the system"
     sub.add_argument("--force", action="store_true", help=text)
     declare_output(sub, "--out", PARAMETER_FILE, "write the system file with the fitted values (TOML)")
-    text = "draw measured and simulated columns and residuals over time (.png, .svg)"
+    text = "draw measured and simulated columns and their differences over time (.png, .svg)"
     declare_output(sub, "--plot", PICTURE_FILE, text)
 
 
-def _run_fit(args: argparse.Namespace) -> CommandResult:
+def _run_system_fit(args: argparse.Namespace) -> CommandResult:
     """Fit the parameters and write the requested files. A doubtful fit is written with `--force` only."""
     if args.out:
         check_fmu_name(args.out.stem)
-        check_sections(find_system_file(args.file), args.free)
+        read_document_with_sections(find_system_file(args.file), args.free)
     fit = fit_system(args.file, args.data, args.free, hold_out=args.hold_out, columns=args.columns)
     outcome = fit.outcome
     if args.plot:
@@ -49,7 +52,7 @@ def _run_fit(args: argparse.Namespace) -> CommandResult:
     if args.out and not doubt:
         fit.save(args.out, force=args.force)
     lines = []
-    for row in outcome.unknown_rows():
+    for row in outcome.list_fitted_parameters():
         low, high = ("unknown" if end is None else f"{end:.6g}" for end in row["interval"])
         mark = "" if row["determined"] else "   not determined"
         ends = f"95 %: {low} to {high}"
@@ -64,8 +67,8 @@ def _run_fit(args: argparse.Namespace) -> CommandResult:
         notes.append(f"the fit does not determine the system: {doubt}{unwritten}")
     return CommandResult(
         json_document=document | {"doubt": doubt},
-        lines=lines,
-        notes=notes,
+        output_lines=lines,
+        stderr_lines=notes,
         written_files=(None if doubt else args.out, args.plot),
         exit_status=int(doubt is not None),
     )

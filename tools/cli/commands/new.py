@@ -15,10 +15,10 @@ from jointfmu.joints import KINDS
 from jointfmu.quantity.units import conversion_factor
 
 from ...api.joint import Joint
-from ...api.make import make_from_drawing
+from ...api.make import make_joint_from_drawing
 from ...common.joint_parts import load_tool_module
 from ...common.pressure import judge_joint_stiffness
-from ...common.shown import align_columns, facts_to_json, format_facts
+from ...common.shown import align_columns, derived_values_to_json, format_derived_values
 from ...inputs.catalogue import CatalogueColumn, CatalogueEntry
 from ...inputs.drawing.part import NewJointCommand
 from ...joints.harmonic_drive.catalogue import CATALOGUE_COLUMNS, list_drives
@@ -30,73 +30,86 @@ from . import declare_option
 
 def add_command(command_parsers: SubParsers) -> None:
     """Declare `jointfmu new`, with a sub-command for each joint and for each table."""
-    text = "make the parameter file of a joint from the data on its drawing"
+    text = "make the parameter file of a joint from the data of its drawing or catalogue"
     top = command_parsers.add_parser("new", help=text, description=format_sentence(text))
     things = top.add_subparsers(dest="thing", required=True, metavar="JOINT", parser_class=Parser)
     for kind in KINDS.values():
         if module := load_tool_module(kind, "new"):
-            _declare_joint(things, kind.name.replace("_", "-"), module.NEW_JOINT_COMMAND)
-    _declare_joint(things, "cycloidal-drive", NEW_CYCLOIDAL_DRIVE_COMMAND)
+            _declare_joint_command(things, kind.name.replace("_", "-"), module.NEW_JOINT_COMMAND)
+    _declare_joint_command(things, "cycloidal-drive", NEW_CYCLOIDAL_DRIVE_COMMAND)
     for name, rows in PRINTED_TABLES.items():
-        declare_command(things, name, partial(_run_table, rows), f"print the table of known {name}")
+        declare_command(
+            things,
+            name,
+            partial(_print_table, rows),
+            f"print the {name} that jointfmu new knows, with their numbers",
+        )
 
 
-def _declare_joint(joint_parsers: SubParsers, joint_name: str, joint_command: NewJointCommand) -> None:
+def _declare_joint_command(
+    joint_parsers: SubParsers, joint_name: str, new_joint_command: NewJointCommand
+) -> None:
     """Declare the sub-command of `jointfmu new` for one joint."""
     sub = declare_command(
-        joint_parsers, joint_name, partial(_run_new, joint_command), f"make {joint_command.description}"
+        joint_parsers,
+        joint_name,
+        partial(_run_new, new_joint_command),
+        f"make {new_joint_command.joint_description}",
     )
-    sub.example = f"new {joint_name} {joint_command.example} --out my.toml"
-    for option in joint_command.options:
+    sub.example_arguments = f"new {joint_name} {new_joint_command.example_options} --out my.toml"
+    for option in new_joint_command.command_options:
         declare_option(sub, option)
-    declare_argument(sub, "--name", str, "name of the parameter set (default: made of its sizes)")
+    declare_argument(
+        sub, "--name", str, "name of the joint in the parameter file (default: made of its sizes)"
+    )
     declare_output(sub, "--out", PARAMETER_FILE, "write the parameter file (TOML)")
 
 
-def _run_new(joint_command: NewJointCommand, args: argparse.Namespace) -> CommandResult:
+def _run_new(new_joint_command: NewJointCommand, args: argparse.Namespace) -> CommandResult:
     """Make a joint from the dimensions of its drawing, given as options."""
-    joint = make_from_drawing(
-        joint_command, {option.name: getattr(args, option.name) for option in joint_command.options}
+    joint = make_joint_from_drawing(
+        new_joint_command,
+        {option.name: getattr(args, option.name) for option in new_joint_command.command_options},
     )
     if args.name:
         joint = replace(joint, file=replace(joint.file, name=args.name))
     if args.out:
         joint.save(args.out, force=args.force)
-    judgement = judge_joint_stiffness(joint.file).with_warnings(joint.notes)
+    judgement = judge_joint_stiffness(joint.file).prepend_warnings(joint.notes)
     end = f"wrote {args.out}" if args.out else "nothing is written: state --out FILE"
     return CommandResult(
         json_document=_joint_to_json(joint)
         | judgement.to_json()
         | {"written": [str(args.out)] if args.out else []},
-        lines=[*format_facts(joint.facts), *judgement.format_lines(), end],
-        notes=[f"warning: {text}" for text in judgement.warnings],
+        output_lines=[*format_derived_values(joint.facts), *judgement.format_lines(), end],
+        stderr_lines=[f"warning: {text}" for text in judgement.warnings],
     )
 
 
-def _joint_to_json(joint: Joint) -> dict[str, object]:
-    """JSON object of a new joint: name, facts, parameters, warnings."""
+def _joint_to_json(new_joint: Joint) -> dict[str, object]:
+    """JSON object of a new joint: joint, law, name, parameters, start values of inputs, derived numbers."""
     return {
-        "joint": joint.file.joint,
-        "law": joint.file.law,
-        "name": joint.file.name,
-        "parameters": joint.file.values_by_name,
-        "inputs": joint.file.inputs,
-        "facts": facts_to_json(joint.facts),
+        "joint": new_joint.file.joint,
+        "law": new_joint.file.law,
+        "name": new_joint.file.name,
+        "parameters": new_joint.file.values_by_name,
+        "inputs": new_joint.file.inputs,
+        "facts": derived_values_to_json(new_joint.facts),
     }
 
 
-def _run_table(
-    iterate_rows: Callable[[], Iterator[dict[str, Any]]], args: argparse.Namespace
+def _print_table(
+    iterate_table_rows: Callable[[], Iterator[dict[str, Any]]], args: argparse.Namespace
 ) -> CommandResult:
     """Print a table that `jointfmu new` offers: bolts, materials or finishes."""
-    content = list(iterate_rows())
-    cells = [[*content[0]], *([_format_cell(cell) for cell in row.values()] for row in content)]
-    return CommandResult(json_document=content, lines=align_columns(cells))
+    content = list(iterate_table_rows())
+    cells = [[*content[0]], *([_format_table_cell(cell) for cell in row.values()] for row in content)]
+    return CommandResult(json_document=content, output_lines=align_columns(cells))
 
 
-def _format_cell(value: object) -> str:
+def _format_table_cell(cell_value: object) -> str:
     """Format a cell of a printed table: number, text or empty."""
-    return f"{value:.4g}" if isinstance(value, float) else str(value)
+    return f"{cell_value:.4g}" if isinstance(cell_value, float) else str(cell_value)
 
 
 _MATERIAL_COLUMNS = {
@@ -122,17 +135,17 @@ def _iterate_table_rows(
     """Yield the rows of the printed table of materials or of finishes.
 
     column_scales : {heading: (column of the table, factor from SI to the printed unit)}
-    source_format : format string for the column `source_format`, filled with the numbers of the row
+    source_format : format string for the source of a row, filled with the numbers of the row
     """
-    from ...inputs.drawing.tables import read_table
+    from ...inputs.drawing.tables import read_material_or_finish_table
 
-    for row in read_table(table_name).values():
+    for row in read_material_or_finish_table(table_name).values():
         numbers = {
-            head: round(row.numbers[column].value * scale, 9)
+            head: round(row.sourced_numbers[column].si_value * scale, 9)
             for head, (column, scale) in column_scales.items()
         }
-        also = {"also": ", ".join(row.aliases), "source": source_format.format(**row.numbers)}
-        yield {"name": row.name, **numbers, **also}
+        also = {"also": ", ".join(row.row_aliases), "source": source_format.format(**row.sourced_numbers)}
+        yield {"name": row.row_name, **numbers, **also}
 
 
 def _iterate_bolt_table_rows() -> Iterator[dict[str, object]]:
@@ -142,11 +155,11 @@ def _iterate_bolt_table_rows() -> Iterator[dict[str, object]]:
 
     for thread in read_threads().values():
         yield {
-            "name": thread.name,
+            "name": thread.thread_name,
             "pitch [mm]": thread.pitch * 1e3,
-            "hole [mm]": thread.hole * 1e3,
-            "hexagon [mm]": thread.hexagon * 1e3,
-            "socket [mm]": thread.socket * 1e3,
+            "hole [mm]": thread.hole_diameter * 1e3,
+            "hexagon [mm]": thread.hexagon_bearing_diameter * 1e3,
+            "socket [mm]": thread.socket_bearing_diameter * 1e3,
             "A_s [mm2]": stress_area(thread) * 1e6,
             **{
                 f"preload {name} [kN]": assembly_preload(
@@ -159,8 +172,10 @@ def _iterate_bolt_table_rows() -> Iterator[dict[str, object]]:
 
 
 PRINTED_TABLES: dict[str, Callable[[], Iterator[dict[str, Any]]]] = {
-    "materials": partial(_iterate_table_rows, "materials", _MATERIAL_COLUMNS, "{E.source}; H: {H.source}"),
-    "finishes": partial(_iterate_table_rows, "finishes", _FINISH_COLUMNS, "{Ra_low.source}"),
+    "materials": partial(
+        _iterate_table_rows, "materials", _MATERIAL_COLUMNS, ("{E.value_source}; H: {H.value_source}")
+    ),
+    "finishes": partial(_iterate_table_rows, "finishes", _FINISH_COLUMNS, "{Ra_low.value_source}"),
     "bolts": _iterate_bolt_table_rows,
 }
 """{name of a table: function that yields its rows}."""
@@ -169,63 +184,73 @@ PRINTED_TABLES: dict[str, Callable[[], Iterator[dict[str, Any]]]] = {
 def add_catalogue_command(command_parsers: SubParsers) -> None:
     """Declare the command `jointfmu catalogue` with its options."""
     sub = declare_command(
-        command_parsers, "catalogue", _run_catalogue, "list the bought joints that jointfmu new knows"
+        command_parsers,
+        "catalogue",
+        _run_catalogue,
+        "list the harmonic drives that jointfmu new knows by name",
     )
-    text = "part of the name, for example CSG-17, csg25-100 or csg 25 100"
+    text = "part of the name, for example CSG-17, csg25-100 or csg 25 100 (default: list all)"
     declare_argument(sub, "words", str, text, "WORD", nargs="*")
 
 
 def _run_catalogue(args: argparse.Namespace) -> CommandResult:
     """List the bought joints whose names contain the words. Raises ValueError if there is none."""
-    found = [item for item in list_drives() if _contains_words(args.words, item.name)]
+    found = [item for item in list_drives() if _name_contains_words(args.words, item.joint_name)]
     if not found:
         word = " ".join(args.words)
-        raise ValueError(f"no drive in the catalogue has {word!r} in its name (jointfmu catalogue)")
-    lines = [f"{'harmonic-drive':13}  {'  '.join(map(_format_heading, CATALOGUE_COLUMNS))}"]
+        raise ValueError(
+            f"no drive in the catalogue has {word!r} in its name; jointfmu catalogue without words lists "
+            "all drives"
+        )
+    lines = [f"{'harmonic-drive':13}  {'  '.join(map(_format_catalogue_heading, CATALOGUE_COLUMNS))}"]
     for item in found:
-        numbers = "  ".join(_format_number(item, column) for column in CATALOGUE_COLUMNS)
-        lines.append(f"{item.name:13}  {numbers}".rstrip())
-    if any(number.origin == "estimate" for item in found for number in item.numbers.values()):
+        numbers = "  ".join(_format_catalogue_number(item, column) for column in CATALOGUE_COLUMNS)
+        lines.append(f"{item.joint_name:13}  {numbers}".rstrip())
+    if any(number.value_origin == "estimate" for item in found for number in item.known_numbers.values()):
         lines.append("~ is an estimate, < an upper limit; --json has the source of each number")
     return CommandResult(
-        json_document=[_entry_to_json(CATALOGUE_COLUMNS, item) for item in found], lines=lines
+        json_document=[_entry_to_json(CATALOGUE_COLUMNS, item) for item in found], output_lines=lines
     )
 
 
-def _contains_words(words: Sequence[str], entry_name: str) -> bool:
+def _name_contains_words(search_words: Sequence[str], entry_name: str) -> bool:
     """Whether the name of a catalogue entry contains the joined words. Case, signs and spaces are ignored."""
-    searched, plain_name = (re.sub(r"[^a-z0-9]", "", text.lower()) for text in ("".join(words), entry_name))
+    searched, plain_name = (
+        re.sub(r"[^a-z0-9]", "", text.lower()) for text in ("".join(search_words), entry_name)
+    )
     return searched in plain_name
 
 
-def _format_heading(column: CatalogueColumn) -> str:
+def _format_catalogue_heading(catalogue_column: CatalogueColumn) -> str:
     """Format the heading of a column of the printed catalogue: name and unit."""
-    return f"{column.name}{'' if column.display_unit == '1' else f' [{column.display_unit}]'}"
+    unit = catalogue_column.display_unit
+    return f"{catalogue_column.column_name}{'' if unit == '1' else f' [{unit}]'}"
 
 
-def _format_number(catalogue_entry: CatalogueEntry, column: CatalogueColumn) -> str:
+def _format_catalogue_number(catalogue_entry: CatalogueEntry, catalogue_column: CatalogueColumn) -> str:
     """Format one number of a catalogue entry, at least as wide as the heading of its column."""
-    width = len(_format_heading(column))
-    if (number := catalogue_entry.numbers.get(column.name)) is None:
+    width = len(_format_catalogue_heading(catalogue_column))
+    if (number := catalogue_entry.known_numbers.get(catalogue_column.column_name)) is None:
         return f"{'-':{width}}"
-    mark = ("~" if number.origin == "estimate" else "") + ("<" if number.is_upper_limit else "")
-    return (
-        f"{mark + format(number.value * conversion_factor(column.unit, column.display_unit), '.4g'):{width}}"
-    )
+    mark = ("~" if number.value_origin == "estimate" else "") + ("<" if number.is_upper_limit else "")
+    factor = conversion_factor(catalogue_column.si_unit, catalogue_column.display_unit)
+    return f"{mark + format(number.si_value * factor, '.4g'):{width}}"
 
 
-def _entry_to_json(columns: Sequence[CatalogueColumn], catalogue_entry: CatalogueEntry) -> dict[str, Any]:
+def _entry_to_json(
+    catalogue_columns: Sequence[CatalogueColumn], catalogue_entry: CatalogueEntry
+) -> dict[str, Any]:
     """JSON object of a catalogue entry: numbers in SI units, with origin and source."""
-    units = {column.name: column.unit for column in columns}
+    units = {column.column_name: column.si_unit for column in catalogue_columns}
     numbers = {
         name: {
-            "value": number.value,
-            "kind": number.origin,
-            "source": number.source,
+            "value": number.si_value,
+            "kind": number.value_origin,
+            "source": number.value_source,
             "is_upper_limit": number.is_upper_limit,
-            "interval": number.interval,
+            "interval": number.estimate_interval,
             "unit": units[name],
         }
-        for name, number in catalogue_entry.numbers.items()
+        for name, number in catalogue_entry.known_numbers.items()
     }
-    return {"joint": "harmonic_drive", "name": catalogue_entry.name, "numbers": numbers}
+    return {"joint": "harmonic_drive", "name": catalogue_entry.joint_name, "numbers": numbers}

@@ -6,7 +6,7 @@ from dataclasses import Field
 from pathlib import Path
 from typing import Any
 
-from jointfmu.contact.laws import LAWS, ROUGHNESS_LAW
+from jointfmu.contact.laws import LAWS, ROUGHNESS_LAW_NAME
 from jointfmu.contact.roughness import HEIGHT_FIELDS
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.parameters import ParameterFile, load_default, load_parameter_file
@@ -16,7 +16,7 @@ from ...common.shown import align_columns
 from ...inputs.laws import build_law_parameters, load_law_file
 from ..command import CommandResult, SubParsers, declare_argument, declare_command
 
-_TABLE_HEAD = ("name", "default", "unit", "allowed", "meaning")
+_PARAMETER_TABLE_HEADINGS = ("name", "default", "unit", "allowed", "meaning")
 """Headings of the printed table of parameters."""
 
 
@@ -29,9 +29,19 @@ def add_command(command_parsers: SubParsers) -> None:
     source = sub.add_mutually_exclusive_group()
     laws = sorted({law for kind in KINDS.values() for law in kind.laws})
     declare_argument(
-        source, "--law", str, f"law of the FMU or joint ({', '.join(laws)})", "LAW", choices=laws
+        source,
+        "--law",
+        str,
+        f"interface law of the FMU or joint ({', '.join(laws)}; default: that of its default parameters)",
+        "LAW",
+        choices=laws,
     )
-    declare_argument(source, "--params", Path, "parameter file, in place of the default values (TOML)")
+    declare_argument(
+        source,
+        "--params",
+        Path,
+        "parameter file whose values are listed, in place of the default values (TOML)",
+    )
 
 
 def _run_parameters(args: argparse.Namespace) -> CommandResult:
@@ -44,7 +54,7 @@ def _run_parameters(args: argparse.Namespace) -> CommandResult:
             build_law_parameters(name, load_law_file(args.params, name) if args.params else None, {})
         )
         fields = dict(flatten_fields(LAWS[name], parameter_names=values))
-        if name == ROUGHNESS_LAW:
+        if name == ROUGHNESS_LAW_NAME:
             fields |= {stated: field for stated, field in HEIGHT_FIELDS.items() if stated not in fields}
         head = {"name": name, "law": name}
     else:
@@ -59,7 +69,7 @@ def _run_parameters(args: argparse.Namespace) -> CommandResult:
     rows = [_parameter_to_json(stated, field, values.get(stated)) for stated, field in fields.items()]
     return CommandResult(
         json_document={**head, "parameters": rows},
-        lines=align_columns([_TABLE_HEAD, *map(_format_row, rows)]),
+        output_lines=align_columns([_PARAMETER_TABLE_HEADINGS, *map(_format_parameter_row, rows)]),
     )
 
 
@@ -75,10 +85,12 @@ def _load_joint_file(fmu_or_joint_name: str, args: argparse.Namespace) -> Parame
     return load_default(joint, args.law)
 
 
-def _parameter_to_json(parameter_name: str, parameter_field: Field[Any], value: Any) -> dict[str, Any]:
+def _parameter_to_json(
+    parameter_name: str, parameter_field: Field[Any], default_value: Any
+) -> dict[str, Any]:
     """JSON object of one parameter: name, meaning, default, unit, lower and upper limit, allowed values."""
     meta = parameter_field.metadata
-    row = {"name": parameter_name, "meaning": meta["doc"], "default": value}
+    row = {"name": parameter_name, "meaning": meta["doc"], "default": default_value}
     if "allowed" in meta:
         return row | {"unit": None, "allowed": list(meta["allowed"])}
     interval = meta["interval"]
@@ -87,26 +99,26 @@ def _parameter_to_json(parameter_name: str, parameter_field: Field[Any], value: 
     return row | {"unit": meta["unit"], "low": low, "high": high, "allowed": str(interval)} | whole
 
 
-def _format_row(parameter_document: dict[str, Any]) -> tuple[str, ...]:
+def _format_parameter_row(parameter_json: dict[str, Any]) -> tuple[str, ...]:
     """Format the row of one parameter: name, default, unit, allowed values, meaning."""
-    allowed = parameter_document["allowed"]
+    allowed = parameter_json["allowed"]
     if isinstance(allowed, list):
         allowed = " | ".join(str(option).lower() for option in allowed)
-    elif "whole" in parameter_document:
+    elif "whole" in parameter_json:
         allowed += " whole"
     return (
-        parameter_document["name"],
-        _format_default(parameter_document["default"]),
-        parameter_document["unit"] or "",
+        parameter_json["name"],
+        _format_default(parameter_json["default"]),
+        parameter_json["unit"] or "",
         allowed,
-        parameter_document["meaning"],
+        parameter_json["meaning"],
     )
 
 
-def _format_default(value: object) -> str:
+def _format_default(default_value: object) -> str:
     """Format the default value of a parameter."""
-    if value is None:
+    if default_value is None:
         return "-"
-    if isinstance(value, tuple):
-        return f"{len(value)} numbers"
-    return str(value).lower() if isinstance(value, bool | str) else f"{value:.6g}"
+    if isinstance(default_value, tuple):
+        return f"{len(default_value)} numbers"
+    return str(default_value).lower() if isinstance(default_value, bool | str) else f"{default_value:.6g}"

@@ -25,13 +25,16 @@ def add_command(command_parsers: SubParsers) -> None:
     """Declare the command `jointfmu prove` with its options."""
     text = "run the experiments stored in an FMU (FMI-LS-REF) and compare with its reference results"
     sub = declare_command(command_parsers, "prove", _run_prove, text)
-    declare_argument(sub, "fmu", Path, "path of the FMU", "FMU")
-    text = f"simulator that runs the FMU: {', '.join(IMPORTERS)}"
+    declare_argument(sub, "fmu", Path, "path of the FMU (.fmu)", "FMU")
+    text = f"program that imports and runs the FMU: {', '.join(IMPORTERS)}"
     choices = list(IMPORTERS)
     declare_argument(sub, "--in", str, text, "IMPORTER", dest="importer", choices=choices, default="fmpy")
-    text = "folder for the files of the FMI cross-check, written if all experiments pass"
+    text = "folder to write for the FMI cross-check, if all experiments pass"
     declare_output(sub, "--listing", OUTPUT_FOLDER, text)
-    text = "parameter file from which start values and reference results are computed, in place of those in "
+    text = (
+        "compare with start values and results computed from this parameter file (TOML), in place of those "
+        "in "
+    )
     declare_argument(sub, "--against", Path, text + "the FMU")
 
 
@@ -43,13 +46,15 @@ def _run_prove(args: argparse.Namespace) -> CommandResult:
         args.fmu, args.importer, _compute_expected_contents(args.fmu, args.against) if args.against else None
     )
     folders = (
-        listing.write_listing(proof, args.listing, args.force) if args.listing and proof.has_passed else []
+        listing.write_fmi_tools_listing(proof, args.listing, args.force)
+        if args.listing and proof.has_passed
+        else []
     )
     listed = {"listing": [str(folder) for folder in folders]} if args.listing else {}
     return CommandResult(
         json_document=report.proof_to_json(proof) | listed,
-        lines=report.format_lines(proof),
-        notes=["the listing is not written: not all experiments passed"]
+        output_lines=report.format_proof_lines(proof),
+        stderr_lines=["the listing is not written: not all experiments passed"]
         if args.listing and not folders
         else (),
         written_files=folders,
@@ -57,7 +62,7 @@ def _run_prove(args: argparse.Namespace) -> CommandResult:
     )
 
 
-def _compute_expected_contents(fmu: Path, path: Path) -> ExpectedFmuContents:
+def _compute_expected_contents(fmu_path: Path, parameter_path: Path) -> ExpectedFmuContents:
     """Compute the start values and reference results that an FMU should contain, from a parameter file.
 
     The FMU is not built.
@@ -68,36 +73,44 @@ def _compute_expected_contents(fmu: Path, path: Path) -> ExpectedFmuContents:
 
     from ...run.host import unpack_fmu
 
-    file = load_parameter_file(path)
-    with unpack_fmu(fmu, model_exchange=True) as (_, description):
+    file = load_parameter_file(parameter_path)
+    with unpack_fmu(fmu_path, accepts_model_exchange=True) as (_, description):
         names = {v.name for v in description.modelVariables}
     for model in KINDS[file.joint].models:
         if {v.name for v in (*model.inputs, *model.outputs)} <= names:
             described = model.with_parameters(file.joint, file.values)
             starts = {name: file.values_by_name[name] for name in described.parameter_fields()}
             starts |= {v.name: file.start_value(v.name) for v in described.inputs}
-            return ExpectedFmuContents(str(path), starts, make_proof_files(described, file))
+            return ExpectedFmuContents(str(parameter_path), starts, make_proof_files(described, file))
     models = ", ".join(model.name for model in KINDS[file.joint].models)
-    raise ValueError(f"{fmu}: does not have the variables of {models}, the FMUs of {path}")
+    raise ValueError(
+        f"{fmu_path}: does not have the inputs and outputs of {models}; expected an FMU of the joint of "
+        f"{parameter_path}"
+    )
 
 
 def add_validate_command(command_parsers: SubParsers) -> None:
     """Declare the command `jointfmu validate` with its options."""
-    text = "compare the laws with quadrature of their equations, and results with published numbers"
+    text = (
+        "compare the laws with numerical integration of their equations, and results with published numbers"
+    )
     sub = declare_command(command_parsers, "validate", _run_validate, text)
-    text = "also compare the measured natural frequencies, by finite elements (half a minute)"
+    text = (
+        "also compare computed with measured natural frequencies of bolted joints, by finite elements (half "
+        "a minute)"
+    )
     sub.add_argument("--frequencies", action="store_true", help=text)
 
 
 def _run_validate(args: argparse.Namespace) -> CommandResult:
     """Run `jointfmu validate`: compare laws and published numbers with computed ones."""
-    rows = validation.validate()
+    rows = validation.validate_published_numbers()
     if args.frequencies:
         with require_fem_packages("the finite-element analysis"):
             rows += compare_natural_frequencies()
     laws = law_reference.compare_laws()
     counts = asdict(validation.count_points(rows))
-    missed_laws = law_reference.missed_quantities(laws)
+    missed_laws = law_reference.list_missed_quantities(laws)
     misses = [*missed_laws, *counts["missed"]]
     return CommandResult(
         json_document={
@@ -106,12 +119,12 @@ def _run_validate(args: argparse.Namespace) -> CommandResult:
             "counts": counts,
             "missed": len(misses),
         },
-        lines=[
+        output_lines=[
             law_reference.format_law_table(laws),
             law_reference.format_law_summary(laws),
             "",
-            validation.format_table(rows),
-            validation.format_summary(rows),
+            validation.format_validation_table(rows),
+            validation.format_validation_summary(rows),
             *([f"missed in both tables: {', '.join(misses)}"] if missed_laws else []),
         ],
         exit_status=int(bool(misses)),

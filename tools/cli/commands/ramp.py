@@ -17,7 +17,7 @@ from ...common import columns, plots
 from ...common.options import format_option_flag
 from ...common.shown import align_columns
 from ...run.ramps import loops, ramp
-from ..command import CommandResult, SubParsers, declare_argument, declare_command, declare_settings
+from ..command import CommandResult, SubParsers, declare_argument, declare_command, declare_set_option
 from ..outputs import declare_output
 
 if TYPE_CHECKING:
@@ -25,41 +25,61 @@ if TYPE_CHECKING:
 
 RAMP_OPTIONS, LOOP_OPTIONS = ("to", "step"), ("about", "shape", "points", "cycles", "output")
 """Options of a ramp, and options of load cycles in addition to --loop."""
-MAX_PRINTED_ROWS = 24
+MAX_PRINTED_RAMP_POINTS = 24
 """Largest number of points of a ramp that are printed on a terminal [1]."""
 
 
 def add_command(command_parsers: SubParsers) -> None:
     """Declare the command `jointfmu ramp` with its options."""
     text = "run an FMU along a load ramp and print its outputs, or in load cycles and print the energy loss"
-    drive = declare_command(command_parsers, "ramp", _run_command, text)
-    declare_argument(drive, "fmu", Path, "path of the FMU", "FMU")
-    declare_argument(drive, "--input", str, "input to vary", required=True)
-    declare_argument(drive, "--to", float, "ramp: last value of the input (SI); the first is zero")
-    declare_argument(drive, "--step", float, "ramp: step of the input (SI)")
+    drive = declare_command(command_parsers, "ramp", _run_ramp_or_loops, text)
+    declare_argument(drive, "fmu", Path, "path of the FMU (.fmu)", "FMU")
     declare_argument(
-        drive, "--loop", float, "amplitudes of load cycles, each started from rest (SI)", nargs="+"
+        drive, "--input", str, "input of the FMU to vary, as in preload or s_rel_x", required=True
     )
-    declare_argument(drive, "--about", float, "cycles: mean value of the input (default: 0)")
+    declare_argument(drive, "--to", float, "ramp: last value of the input (SI units); the first is 0")
+    declare_argument(drive, "--step", float, "ramp: step of the input (SI units)")
+    declare_argument(
+        drive,
+        "--loop",
+        float,
+        "cycles: amplitudes of the input (SI units), each in a new run of the FMU",
+        nargs="+",
+    )
+    declare_argument(drive, "--about", float, "cycles: mean value of the input (SI units; default: 0)")
     drive.add_argument(
-        "--shape", choices=loops.WAVEFORMS, help=f"cycles: shape over time (default: {loops.WAVEFORMS[0]})"
+        "--shape",
+        choices=loops.WAVEFORMS,
+        help=f"cycles: shape of the input over time (default: {loops.WAVEFORMS[0]})",
     )
     declare_argument(
         drive, "--points", int, f"cycles: points per cycle (default: {loops.DEFAULT_POINTS_PER_CYCLE})"
     )
     declare_argument(
-        drive, "--cycles", int, f"cycles: number per amplitude (default: {loops.DEFAULT_CYCLE_COUNT})"
+        drive,
+        "--cycles",
+        int,
+        f"cycles: number of cycles per amplitude (default: {loops.DEFAULT_CYCLE_COUNT})",
     )
-    declare_argument(drive, "--output", str, "cycles: force or motion conjugate to the input")
+    declare_argument(
+        drive,
+        "--output",
+        str,
+        "cycles: output conjugate to the input, for the energy loss, as in f_x for s_rel_x (default: found "
+        "by name)",
+    )
     declare_argument(drive, "--columns", str, "ramp: outputs to print (default: all)", nargs="+")
-    declare_settings(drive)
-    declare_output(drive, "--csv", columns.TABLE_FILE_KIND, "write every point to a file")
+    declare_set_option(drive, "set parameters and other inputs (SI units), as in preload=9e3")
+    declare_output(drive, "--csv", columns.TABLE_FILE_KIND, "write every point to a table (.csv)")
     declare_output(
-        drive, "--plot", PICTURE_FILE, "draw the outputs of a ramp, or loops, loss and stiffness (.png, .svg)"
+        drive,
+        "--plot",
+        PICTURE_FILE,
+        "draw the outputs of a ramp, or the loops of cycles with energy loss and stiffness (.png, .svg)",
     )
 
 
-def _run_command(args: argparse.Namespace) -> CommandResult:
+def _run_ramp_or_loops(args: argparse.Namespace) -> CommandResult:
     """Run a ramp or load cycles. Raises ValueError if the options describe both or neither."""
     ramp_options, loop_options = (
         [name for name in names if getattr(args, name) is not None] for names in (RAMP_OPTIONS, LOOP_OPTIONS)
@@ -80,9 +100,9 @@ def _run_command(args: argparse.Namespace) -> CommandResult:
     return _run_loops(args) if args.loop else _run_ramp(args)
 
 
-def _print_messages(messages: Iterable[str], driven_input: str) -> None:
+def _print_messages(fmu_messages: Iterable[str], driven_input: str) -> None:
     """Print the messages of the FMU; omit the one that says that the driven input starts at 0."""
-    for message in messages:
+    for message in fmu_messages:
         if not (message.startswith(f"{driven_input} = 0") and "in place of its start value" in message):
             print(message, file=sys.stderr)
 
@@ -90,20 +110,21 @@ def _print_messages(messages: Iterable[str], driven_input: str) -> None:
 def _run_ramp(args: argparse.Namespace) -> CommandResult:
     """Run an FMU along a load ramp, and print or write its outputs."""
     result = ramp.run_ramp(args.fmu, args.input, args.to, args.step, dict(args.settings))
-    _print_messages(result.messages, args.input)
+    _print_messages(result.log_messages, args.input)
     result = _select_columns(result, args.input, args.columns)
     if args.csv:
-        write_text(args.csv, result.format_csv())
+        write_text(args.csv, result.format_time_series_csv())
     if args.plot:
-        count = len(result.columns) - 1
+        count = len(result.variable_columns) - 1
         with plots.open_figure(args.plot, (4.0 * min(count, 3), 2.8 * math.ceil(count / 3))) as figure:
             _draw_ramp(figure, result)
-    columns = {name: column.tolist() for name, column in result.columns.items()}
+    columns = {name: column.tolist() for name, column in result.variable_columns.items()}
     lines = [f"wrote {path}: {len(columns[args.input])} points" for path in (args.csv, args.plot) if path]
     if not lines and not args.json:
-        lines = _format_ramp_points(result) if sys.stdout.isatty() else [result.format_csv()[:-1]]
+        lines = _format_ramp_points(result) if sys.stdout.isatty() else [result.format_time_series_csv()[:-1]]
     return CommandResult(
-        json_document={"fmu": str(args.fmu), "units": result.units, "columns": columns}, lines=lines
+        json_document={"fmu": str(args.fmu), "units": result.variable_units, "columns": columns},
+        output_lines=lines,
     )
 
 
@@ -111,25 +132,25 @@ def _select_columns(
     ramp_result: ramp.RampResult, varied_input: str, output_names: list[str] | None
 ) -> ramp.RampResult:
     """Select the varied input and the requested outputs. Raises ValueError for an unknown output."""
-    if unknown := [name for name in output_names or () if name not in ramp_result.columns]:
+    if unknown := [name for name in output_names or () if name not in ramp_result.variable_columns]:
         raise ValueError(
-            f"--columns {unknown[0]}: unknown output, allowed are {', '.join(ramp_result.columns)}"
+            f"--columns {unknown[0]}: unknown output, allowed are {', '.join(ramp_result.variable_columns)}"
         )
-    selected = list(dict.fromkeys([varied_input, *(output_names or ramp_result.columns)]))
+    selected = list(dict.fromkeys([varied_input, *(output_names or ramp_result.variable_columns)]))
     return replace(
         ramp_result,
-        columns={name: ramp_result.columns[name] for name in selected},
-        units={name: ramp_result.units[name] for name in selected},
+        variable_columns={name: ramp_result.variable_columns[name] for name in selected},
+        variable_units={name: ramp_result.variable_units[name] for name in selected},
     )
 
 
 def _format_ramp_points(ramp_result: ramp.RampResult) -> list[str]:
-    """Format up to MAX_PRINTED_ROWS points of a ramp, first and last included, in display units."""
-    count = next(iter(ramp_result.columns.values())).size
-    indices = np.unique(np.linspace(0, count - 1, min(count, MAX_PRINTED_ROWS)).round().astype(int))
+    """Format up to MAX_PRINTED_RAMP_POINTS points of a ramp, first and last included, in display units."""
+    count = next(iter(ramp_result.variable_columns.values())).size
+    indices = np.unique(np.linspace(0, count - 1, min(count, MAX_PRINTED_RAMP_POINTS)).round().astype(int))
     columns = []
-    for name, values in ramp_result.columns.items():
-        unit, size = plots.choose_unit(ramp_result.units[name], values)
+    for name, values in ramp_result.variable_columns.items():
+        unit, size = plots.choose_plot_unit(ramp_result.variable_units[name], values)
         columns.append(
             [
                 f"{name}{'' if unit == '1' else f' [{unit}]'}",
@@ -140,13 +161,15 @@ def _format_ramp_points(ramp_result: ramp.RampResult) -> list[str]:
     return [*align_columns([*zip(*columns, strict=True)], 0), *more]
 
 
-def _draw_ramp(figure: "Figure", ramp_result: ramp.RampResult) -> None:
-    """Draw every output over the varied input."""
-    (driven, x), *outputs = ramp_result.columns.items()
-    x_unit, x_size = plots.choose_unit(ramp_result.units[driven], x)
-    axes = figure.subplots(math.ceil(len(outputs) / 3), min(len(outputs), 3), squeeze=False).ravel()
+def _draw_ramp(matplotlib_figure: "Figure", ramp_result: ramp.RampResult) -> None:
+    """Draw every output against the varied input."""
+    (driven, x), *outputs = ramp_result.variable_columns.items()
+    x_unit, x_size = plots.choose_plot_unit(ramp_result.variable_units[driven], x)
+    axes = matplotlib_figure.subplots(
+        math.ceil(len(outputs) / 3), min(len(outputs), 3), squeeze=False
+    ).ravel()
     for panel, (name, y) in zip(axes, outputs, strict=False):
-        unit, size = plots.choose_unit(ramp_result.units[name], y)
+        unit, size = plots.choose_plot_unit(ramp_result.variable_units[name], y)
         panel.plot(x_size * x, size * y, color=plots.BLUE)
         panel.set_ylabel(f"{name} [{unit}]")
         panel.set_xlabel(f"{driven} [{x_unit}]")
@@ -156,66 +179,83 @@ def _draw_ramp(figure: "Figure", ramp_result: ramp.RampResult) -> None:
 
 def _run_loops(args: argparse.Namespace) -> CommandResult:
     """Run an FMU in load cycles, and print or write loss and stiffness."""
-    stated = {name: getattr(args, name) for name in LOOP_OPTIONS[:4] if getattr(args, name) is not None}
-    if "about" in stated:
-        stated["centre"] = stated.pop("about")
-    swing = loops.CyclicPath(**stated)
+    fields = {
+        "about": "centre_value",
+        "shape": "waveform",
+        "points": "points_per_cycle",
+        "cycles": "cycle_count",
+    }
+    stated = {name: value for option, name in fields.items() if (value := getattr(args, option)) is not None}
+    swing = loops.CyclicInputPath(**stated)
     found = loops.run_loops(args.fmu, args.input, args.loop, swing, args.output, dict(args.settings))
-    _print_messages(found.messages, args.input)
+    _print_messages(found.log_messages, args.input)
     if args.csv:
-        write_text(args.csv, found.format_csv())
+        write_text(args.csv, found.format_point_table())
     if args.plot:
         with plots.open_figure(args.plot, (11.4, 3.8)) as figure:
             _draw_loops(figure, found, swing)
-    lines, written = found.format_table().splitlines(), (args.csv, args.plot)
-    return CommandResult(json_document=_loops_to_json(args.fmu, found), lines=lines, written_files=written)
+    lines, written = found.format_quantity_table().splitlines(), (args.csv, args.plot)
+    return CommandResult(
+        json_document=_loops_to_json(args.fmu, found), output_lines=lines, written_files=written
+    )
 
 
 def _loops_to_json(fmu: Path, hysteresis_loops: loops.HysteresisLoops) -> dict[str, object]:
     """JSON object of load cycles. Forces act on the joint and are positive in the direction of motion."""
-    rows = hysteresis_loops.compute_loop_results()
+    rows = hysteresis_loops.compute_quantities_of_loops()
     for row, loop in zip(rows, hysteresis_loops.loops, strict=True):
-        row |= {"motions": loop.motion.tolist(), "forces": loop.force.tolist(), "closed": loop.cycle_start}
+        row |= {
+            "motions": loop.displacements.tolist(),
+            "forces": loop.forces.tolist(),
+            "closed": loop.last_cycle_start_index,
+        }
     names = {
-        "motion": hysteresis_loops.motion_name,
+        "motion": hysteresis_loops.displacement_name,
         "force": hysteresis_loops.force_name,
         "sign": hysteresis_loops.force_sign,
     }
     return {
         "fmu": str(fmu),
         **names,
-        "units": dict(zip(("motion", "force"), hysteresis_loops.units, strict=True)),
+        "units": dict(zip(("motion", "force"), hysteresis_loops.displacement_and_force_units, strict=True)),
         "rows": rows,
     }
 
 
 def _draw_loops(
-    figure: "Figure", hysteresis_loops: loops.HysteresisLoops, cyclic_path: loops.CyclicPath
+    matplotlib_figure: "Figure", hysteresis_loops: loops.HysteresisLoops, cyclic_path: loops.CyclicInputPath
 ) -> None:
-    """Draw hysteresis loops with first loading and end points; energy loss and stiffness over amplitude."""
-    left, middle, right = figure.subplots(1, 3, width_ratios=(1.3, 1.0, 1.0))
-    cycles = sorted(hysteresis_loops.loops, key=lambda loop: loop.amplitudes[0])
+    """Draw hysteresis loops with first loading and end points; energy loss and stiffness versus amplitude."""
+    left, middle, right = matplotlib_figure.subplots(1, 3, width_ratios=(1.3, 1.0, 1.0))
+    cycles = sorted(hysteresis_loops.loops, key=lambda loop: loop.displacement_and_force_amplitude[0])
     (motion, x_size), (force, y_size) = (
-        plots.choose_unit(unit, np.concatenate([getattr(loop, name) for loop in cycles]))
-        for unit, name in zip(hysteresis_loops.units, ("motion", "force"), strict=True)
+        plots.choose_plot_unit(unit, np.concatenate([getattr(loop, name) for loop in cycles]))
+        for unit, name in zip(
+            hysteresis_loops.displacement_and_force_units, ("displacements", "forces"), strict=True
+        )
     )
     for loop in cycles:
-        x, y = x_size * loop.motion[loop.cycle_start :], y_size * loop.force[loop.cycle_start :]
+        x, y = (
+            x_size * loop.displacements[loop.last_cycle_start_index :],
+            y_size * loop.forces[loop.last_cycle_start_index :],
+        )
         left.plot(x, y, color=plots.BLUE, lw=1.2)
-    first = slice(None, cyclic_path.points // 4 + 1)
-    left.plot(x_size * cycles[-1].motion[first], y_size * cycles[-1].force[first], "--", color=plots.RED)
-    ends = np.array([(x_size * loop.motion[-1], y_size * loop.force[-1]) for loop in cycles])
+    first = slice(None, cyclic_path.points_per_cycle // 4 + 1)
+    left.plot(
+        x_size * cycles[-1].displacements[first], y_size * cycles[-1].forces[first], "--", color=plots.RED
+    )
+    ends = np.array([(x_size * loop.displacements[-1], y_size * loop.forces[-1]) for loop in cycles])
     left.plot(*ends.T, "o", color=plots.RED, ms=4, label="first loading, ends of the loops")
-    left.set_xlabel(f"{hysteresis_loops.motion_name} [{motion}]")
+    left.set_xlabel(f"{hysteresis_loops.displacement_name} [{motion}]")
     left.set_ylabel(
         f"{'-' if hysteresis_loops.force_sign < 0.0 else ''}{hysteresis_loops.force_name} [{force}]"
     )
     left.legend(loc="lower right")
-    rows = [loop.compute_results() for loop in cycles]
+    rows = [loop.compute_loop_quantities() for loop in cycles]
     amplitude, stiffness, loss = (
         np.array([row[name] for row in rows]) for name in ("motion", "secant_stiffness", "loss")
     )
-    unit, size = plots.choose_unit(hysteresis_loops.result_units["secant_stiffness"], stiffness)
+    unit, size = plots.choose_plot_unit(hysteresis_loops.loop_quantity_units["secant_stiffness"], stiffness)
     for axes, y, label in (
         (middle, loss, "energy loss per cycle [J]"),
         (right, size * stiffness, f"secant stiffness [{unit}]"),

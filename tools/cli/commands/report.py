@@ -15,9 +15,18 @@ def add_command(command_parsers: SubParsers) -> None:
     text = "write a page about one joint: curves, loops, friction, sources of the numbers, validity"
     make = declare_command(command_parsers, "report", _run_report, text)
     declare_argument(
-        make, "file", Path, "parameter file (TOML), or name of an FMU, a joint or a catalogue entry"
+        make,
+        "file",
+        Path,
+        "parameter file (TOML), or name of an FMU, a joint or a drive of jointfmu catalogue",
     )
-    declare_argument(make, "--fmu", str, "FMU of the joint that the page describes (default: the first)")
+    declare_argument(
+        make,
+        "--fmu",
+        str,
+        "FMU of the joint that the page describes, as in HarmonicDriveCompliance (default: the first of the "
+        "joint)",
+    )
     declare_output(make, "--out", HTML_FILE, "page to write (.html; default: FILE.html in this folder)")
 
 

@@ -21,20 +21,20 @@ from ..command import (
     SubParsers,
     declare_argument,
     declare_command,
-    declare_settings,
+    declare_set_option,
     suggest_word,
 )
 from ..outputs import declare_output
 
 if TYPE_CHECKING:
-    from ...studies.uncertainty.problem import UncertaintyProblem
-    from ...studies.uncertainty.runs import Execution, SampledOutputs
+    from ...studies.uncertainty.problem import UncertaintyStudy
+    from ...studies.uncertainty.runs import SampledOutputs, StudyExecution
 
 DISTRIBUTIONS_HELP = (
-    "distributions: LOW..HIGH (uniform), VALUE+-PERCENT%, loguniform(LOW, HIGH), "
-    "normal(MEAN, SD), lognormal(MEDIAN, FACTOR), triangular(LOW, MODE, HIGH); SD and FACTOR also in %; "
-    "+-5%, normal(2%), lognormal(20%) are relative to the value in the file; interval: uniform over the "
-    "range that the source states; quote the parentheses for your shell"
+    "distributions: LOW..HIGH (uniform), VALUE+-PERCENT% (uniform), loguniform(LOW, HIGH), normal(MEAN, "
+    "SD), lognormal(MEDIAN, FACTOR), triangular(LOW, MODE, HIGH); SD and FACTOR also in %; +-5%, "
+    "normal(2%), lognormal(20%) are relative to the value in the file; interval: uniform over the range in "
+    "the parameter file; put words with parentheses in quotation marks, as in 'mu=normal(0.2, 0.02)'"
 )
 """Help text on the distributions of `--set`."""
 
@@ -52,44 +52,72 @@ def add_command(command_parsers: SubParsers) -> None:
     text = "compute uncertainty bands of a joint or an FMU from uncertain parameters"
     study = declare_command(command_parsers, "uncertainty", _run_uncertainty, text)
     study.epilog = DISTRIBUTIONS_HELP
-    joints = f"one of {', '.join(KINDS)}, or the path of an FMU"
+    joints = f"joint ({', '.join(KINDS)}), or the path of an FMU; without it, the joint of --params"
     declare_argument(study, "subject", str, joints, "JOINT|FMU", nargs="?")
-    declare_argument(study, "--params", Path, "parameter file of the joint (TOML)")
-    _declare_sampling(study, f"default: {DEFAULT_JOINT_SAMPLE_COUNT}; of an FMU: {DEFAULT_FMU_SAMPLE_COUNT}")
-    declare_argument(study, "--to", float, "last value of the load ramp (SI)")
     declare_argument(
-        study, "--points", int, f"number of points of a joint's ramp (default: {DEFAULT_RAMP_POINT_COUNT})"
+        study, "--params", Path, "parameter file of the joint, in place of its default parameters (TOML)"
     )
-    declare_argument(study, "--input", str, "input of the FMU to vary")
-    declare_argument(study, "--step", float, "step of the ramp of an FMU (SI)")
-    declare_output(study, "--csv", columns.TABLE_FILE_KIND, "write the bands to a file")
+    _declare_sampling_options(
+        study, f"default: {DEFAULT_JOINT_SAMPLE_COUNT}; for an FMU: {DEFAULT_FMU_SAMPLE_COUNT}"
+    )
+    declare_argument(study, "--to", float, "last value of the load ramp (SI units), needed for an FMU")
+    declare_argument(
+        study,
+        "--points",
+        int,
+        f"joint: number of points of the load ramp (default: {DEFAULT_RAMP_POINT_COUNT})",
+    )
+    declare_argument(study, "--input", str, "FMU: input to vary along the ramp")
+    declare_argument(study, "--step", float, "FMU: step of the ramp (SI units)")
+    declare_output(study, "--csv", columns.TABLE_FILE_KIND, "write the bands over the load (.csv)")
     declare_output(study, "--plot", PICTURE_FILE, "draw bands and sensitivity indices (.png, .svg)")
-    _declare_execution(study, "folder that keeps all runs; the same command resumes")
-
-
-def _declare_sampling(parser: Parser, defaults: str) -> None:
-    """Declare the options for distributions, number of samples and seed."""
-    declare_argument(parser, "--study", Path, "study file with the distributions (TOML)")
-    declare_settings(parser)
-    declare_argument(
-        parser, "--samples", int, f"number of samples, rounded up to a power of two ({defaults})"
+    _declare_run_options(
+        study, "new or empty folder that keeps all runs; after a stop, the same command continues there"
     )
-    declare_argument(parser, "--seed", int, "seed of the Sobol' sequence", default=0)
 
 
-def _declare_execution(parser: Parser, folder_help: str, **options: Any) -> None:
+def _declare_sampling_options(parser: Parser, default_sample_count_help: str) -> None:
+    """Declare the options for distributions, number of samples and seed."""
+    declare_argument(
+        parser, "--study", Path, "file with distributions and fixed values (TOML); --set takes precedence"
+    )
+    declare_set_option(parser, "distribution of a parameter, or a fixed value (SI units), as in mu=0.1..0.3")
+    declare_argument(
+        parser,
+        "--samples",
+        int,
+        f"number of samples, rounded up to a power of two ({default_sample_count_help})",
+    )
+    declare_argument(
+        parser,
+        "--seed",
+        int,
+        "seed of the random samples (Sobol' sequence): the same seed gives the same numbers",
+        default=0,
+    )
+
+
+def _declare_run_options(parser: Parser, folder_help: str, **options: Any) -> None:
     """Declare the options for the folder that stores the runs, and for the processes that execute them."""
     declare_output(parser, "--out", OUTPUT_FOLDER, folder_help, allow_overwrite=False, **options)
     workers = parser.add_mutually_exclusive_group()
-    declare_argument(workers, "--scheduler", str, "dask scheduler of a cluster, tls://HOST:PORT", "ADDRESS")
+    declare_argument(
+        workers,
+        "--scheduler",
+        str,
+        "run on a dask cluster: address of its scheduler, tls://HOST:PORT",
+        "ADDRESS",
+    )
     declare_argument(workers, "--workers", int, "largest number of local processes (default: one per core)")
 
 
-def load_parameter_file_option(joint_name: str | None, params: Path | None) -> ParameterFile:
+def load_parameter_file_option(joint_name: str | None, parameter_path: Path | None) -> ParameterFile:
     """Load the parameter file of `--params`, or the default of JOINT; ValueError if both are missing."""
-    if params is None and joint_name is None:
+    if parameter_path is None and joint_name is None:
         raise ValueError(f"JOINT or --params FILE is missing; JOINT is one of {', '.join(KINDS)}")
-    return load_parameter_file(params, joint_name) if params else load_default(str(joint_name))
+    return (
+        load_parameter_file(parameter_path, joint_name) if parameter_path else load_default(str(joint_name))
+    )
 
 
 def _is_fmu(joint_or_fmu: str | None) -> bool:
@@ -106,95 +134,99 @@ def _is_fmu(joint_or_fmu: str | None) -> bool:
     )
 
 
-def _check_options(args: argparse.Namespace, is_fmu: bool) -> None:
+def _check_options(args: argparse.Namespace, is_fmu_study: bool) -> None:
     """Raise ValueError if an option is missing, or does not apply to the subject of the study.
 
-    is_fmu : True: the subject is an FMU. False: it is a joint
+    is_fmu_study : True: the subject is an FMU. False: it is a joint
     """
-    subject = "an FMU" if is_fmu else "a joint"
-    for name in ("params", "points") if is_fmu else ("input", "step"):
+    subject = "an FMU" if is_fmu_study else "a joint"
+    for name in ("params", "points") if is_fmu_study else ("input", "step"):
         if getattr(args, name) is not None:
             raise ValueError(f"{format_option_flag(name)} does not apply to {subject}; leave it out")
-    if missing := [name for name in ("input", "to", "step") if is_fmu and getattr(args, name) is None]:
+    if missing := [name for name in ("input", "to", "step") if is_fmu_study and getattr(args, name) is None]:
         raise ValueError(f"{format_option_flag(missing[0])} is missing, needed for {subject}")
 
 
-def _sample_count(args: argparse.Namespace, default: int) -> int:
+def _read_sample_count(args: argparse.Namespace, default_sample_count: int) -> int:
     """Number of samples of a study, a power of two. Raises ValueError for a wrong number or seed."""
     from ...studies.uncertainty import study
 
     study.check_seed(args.seed)
-    return study.round_up_to_power_of_two(default if args.samples is None else args.samples)
+    return study.round_up_to_power_of_two(default_sample_count if args.samples is None else args.samples)
 
 
-def _make_execution(args: argparse.Namespace) -> "Execution":
-    """Make the execution of the runs of a study, from the options: local processes, or a dask cluster."""
-    from ...studies.uncertainty.runs import Execution
+def _create_run_executor(args: argparse.Namespace) -> "StudyExecution":
+    """State from the options where the runs of a study are executed: local processes, or a dask cluster."""
+    from ...studies.uncertainty.runs import StudyExecution
 
     if args.workers is not None and args.workers < 1:
         raise ValueError(f"workers = {args.workers} is outside [1, inf)")
-    return Execution(args.out, args.scheduler, args.workers)
+    return StudyExecution(args.out, args.scheduler, args.workers)
 
 
 @contextmanager
 def _open_study_folder(
-    uncertainty_problem: "UncertaintyProblem", sample_count: int, seed: int, out: Path | None
+    uncertainty_study: "UncertaintyStudy", sample_count: int, seed: int, study_folder: Path | None
 ) -> Iterator[None]:
-    """Context that reserves the folder `out` for the runs of this study; None: nothing is stored."""
+    """Reserve the folder `study_folder` for the runs of this study (context manager); None: store nothing."""
     from ...studies.uncertainty import journal
 
-    if out is None:
+    if study_folder is None:
         yield
         return
     try:
-        with journal.open_claimed_folder(out, uncertainty_problem.study_record(sample_count, seed)):
+        with journal.open_claimed_folder(
+            study_folder, uncertainty_study.make_study_record(sample_count, seed)
+        ):
             yield
     except KeyboardInterrupt:
-        text = f"finished runs are kept in {out}, the same command resumes"
+        text = f"finished runs are kept in {study_folder}, the same command resumes"
         raise KeyboardInterrupt(text) from None
 
 
-def _state_study_of_fmu(args: argparse.Namespace, fmu: Path) -> "UncertaintyProblem":
+def _define_fmu_study(args: argparse.Namespace, fmu: Path) -> "UncertaintyStudy":
     """Define the uncertainty study of an FMU from the options: distributions, outputs, loads."""
     from ...studies.uncertainty import study
-    from ...studies.uncertainty.sweep import state_fmu_problem
+    from ...studies.uncertainty.sweep import define_fmu_study
     from ...studies.uncertainty.worker import LoadRamp
 
     ramp = LoadRamp(args.input, args.to, args.step)
-    return state_fmu_problem(fmu, ramp, study.merge_settings(args.study, args.settings))
+    return define_fmu_study(fmu, ramp, study.merge_settings(args.study, args.settings))
 
 
 def _run_uncertainty(args: argparse.Namespace) -> CommandResult:
     """Run `jointfmu uncertainty`: propagate uncertain parameters through a joint or an FMU."""
     from ...studies.uncertainty import journal, problem, propagate, report, study
-    from ...studies.uncertainty.sweep import format_runs_csv
-    from ...studies.uncertainty.worker import JointRamp
+    from ...studies.uncertainty.sweep import format_quantiles_csv
+    from ...studies.uncertainty.worker import JointRampEvaluator
 
     is_fmu = _is_fmu(args.subject)
     _check_options(args, is_fmu)
-    execution = _make_execution(args)
-    count = _sample_count(args, DEFAULT_FMU_SAMPLE_COUNT if is_fmu else DEFAULT_JOINT_SAMPLE_COUNT)
+    execution = _create_run_executor(args)
+    count = _read_sample_count(args, DEFAULT_FMU_SAMPLE_COUNT if is_fmu else DEFAULT_JOINT_SAMPLE_COUNT)
     judgement = None
     if is_fmu:
-        task = _state_study_of_fmu(args, Path(args.subject))
-        A = study.unit_cube_points(count, len(task.uncertain_parameters), args.seed)
+        task = _define_fmu_study(args, Path(args.subject))
+        A = study.draw_unit_cube_points(count, len(task.uncertain_parameters), args.seed)
     else:
         file = load_parameter_file_option(args.subject, args.params)
         points = DEFAULT_RAMP_POINT_COUNT if args.points is None else args.points
         distributions = study.merge_settings(args.study, args.settings)
-        task = problem.state_problem(file, distributions, args.to, points)
-        A, B = propagate.sample_designs(task, count, args.seed)
-        assert isinstance(task.evaluator, JointRamp)
-        judgement = judge_joint_stiffness(task.evaluator.file, report.select_table_loads(task))
+        task = problem.define_joint_study(file, distributions, args.to, points)
+        A, B = propagate.draw_independent_point_sets(task, count, args.seed)
+        assert isinstance(task.run_evaluator, JointRampEvaluator)
+        judgement = judge_joint_stiffness(task.run_evaluator.parameter_file, report.select_table_loads(task))
     indices = None
     with _open_study_folder(task, count, args.seed, args.out):
         bands = propagate.compute_bands(task, A, execution)
-        if not is_fmu and len(task.uncertain_parameters) > 1 and bands.has_scatter:
+        if not is_fmu and len(task.uncertain_parameters) > 1 and bands.has_output_scatter:
             rows = min(count, max(1024, count // 32))
             indices = propagate.compute_sensitivity(task, bands, A[:rows], B[:rows], execution)
     if args.out:
         text = (
-            format_runs_csv(args.out, task.variable_units) if is_fmu else report.format_bands_csv(task, bands)
+            format_quantiles_csv(args.out, task.variable_units)
+            if is_fmu
+            else report.format_bands_csv(task, bands)
         )
         write_text(args.out / journal.BANDS_FILE, text)
     if args.csv:
@@ -203,20 +235,25 @@ def _run_uncertainty(args: argparse.Namespace) -> CommandResult:
         report.draw_bands_and_indices(
             args.plot, bands, indices, f"{task.ramped_input.name} [{task.ramped_input.unit}]"
         )
-    document, lines = report.study_to_json(task, bands, indices), [report.format_table(task, bands, indices)]
+    document, lines = (
+        report.study_to_json(task, bands, indices),
+        [report.format_study_table(task, bands, indices)],
+    )
     if args.out:
-        counts, line = _count_runs(bands.sampled_outputs, args.out)
+        counts, line = _count_stored_runs(bands.sampled_outputs, args.out)
         document |= counts
         lines.append(line)
-    return CommandResult(json_document=document, lines=lines, stiffness_judgement=judgement)
+    return CommandResult(json_document=document, output_lines=lines, stiffness_judgement=judgement)
 
 
-def _count_runs(samples: "SampledOutputs", out: Path) -> tuple[dict[str, object], str]:
-    """Numbers of runs in the folder of a study: as JSON object, and as a line of text."""
-    count, failed = samples.accepted.size, len(samples.errors)
-    new = samples.new_run_count
-    line = f"{count} runs in {out}: {new} now, {count - new} before, {failed} failed"
-    return {"out": str(out), "runs": count, "now": new, "failed": failed}, line
+def _count_stored_runs(
+    sampled_outputs: "SampledOutputs", study_folder: Path
+) -> tuple[dict[str, object], str]:
+    """Count the runs stored in the folder of a study; returns a JSON object and a line of text."""
+    count, failed = sampled_outputs.accepted_mask.size, len(sampled_outputs.error_messages)
+    new = sampled_outputs.new_run_count
+    line = f"{count} runs in {study_folder}: {new} now, {count - new} before, {failed} failed"
+    return {"out": str(study_folder), "runs": count, "now": new, "failed": failed}, line
 
 
 def add_sweep_command(command_parsers: SubParsers) -> None:
@@ -224,12 +261,12 @@ def add_sweep_command(command_parsers: SubParsers) -> None:
     text = "deprecated name of jointfmu uncertainty FMU --out FOLDER"
     many = declare_command(command_parsers, "sweep", _run_sweep, text)
     many.epilog = DISTRIBUTIONS_HELP
-    declare_argument(many, "fmu", Path, "path of the FMU", "FMU")
-    _declare_sampling(many, f"default: {DEFAULT_FMU_SAMPLE_COUNT}")
-    declare_argument(many, "--input", str, "input to vary", required=True)
-    declare_argument(many, "--to", float, "last value of the ramp (SI)", required=True)
-    declare_argument(many, "--step", float, "step of the ramp (SI)", required=True)
-    _declare_execution(many, "folder for the results", required=True)
+    declare_argument(many, "fmu", Path, "path of the FMU (.fmu)", "FMU")
+    _declare_sampling_options(many, f"default: {DEFAULT_FMU_SAMPLE_COUNT}")
+    declare_argument(many, "--input", str, "input to vary along the ramp", required=True)
+    declare_argument(many, "--to", float, "last value of the ramp (SI units)", required=True)
+    declare_argument(many, "--step", float, "step of the ramp (SI units)", required=True)
+    _declare_run_options(many, "folder for the results", required=True)
 
 
 def _run_sweep(args: argparse.Namespace) -> CommandResult:
@@ -239,26 +276,28 @@ def _run_sweep(args: argparse.Namespace) -> CommandResult:
     """
     from ...studies.uncertainty import journal, study
     from ...studies.uncertainty.runs import evaluate_runs
-    from ...studies.uncertainty.sweep import format_runs_csv
+    from ...studies.uncertainty.sweep import format_quantiles_csv
 
-    execution = _make_execution(args)
-    count = _sample_count(args, DEFAULT_FMU_SAMPLE_COUNT)
-    task = _state_study_of_fmu(args, args.fmu)
-    runs = task.list_runs(study.unit_cube_points(count, len(task.uncertain_parameters), args.seed))
+    execution = _create_run_executor(args)
+    count = _read_sample_count(args, DEFAULT_FMU_SAMPLE_COUNT)
+    task = _define_fmu_study(args, args.fmu)
+    runs = task.list_run_settings(
+        study.draw_unit_cube_points(count, len(task.uncertain_parameters), args.seed)
+    )
     with _open_study_folder(task, count, args.seed, args.out):
-        samples = evaluate_runs(task.evaluator, runs, task.units, task.loads.size, execution)
-    if len(samples.errors) < count:
-        write_text(args.out / journal.BANDS_FILE, format_runs_csv(args.out, task.variable_units))
+        samples = evaluate_runs(task.run_evaluator, runs, task.output_units, task.loads.size, execution)
+    if len(samples.error_messages) < count:
+        write_text(args.out / journal.BANDS_FILE, format_quantiles_csv(args.out, task.variable_units))
     print(SWEEP_DEPRECATION_NOTE, file=sys.stderr)
-    document, line = _count_runs(samples, args.out)
+    document, line = _count_stored_runs(samples, args.out)
     lines, failure = [line], None
-    if samples.errors:
-        first, error = next(iter(samples.errors.items()))
+    if samples.error_messages:
+        first, error = next(iter(samples.error_messages.items()))
         failure = {"run": first, "parameters": runs[first], "error": error}
         values = ", ".join(f"{k} = {v}" for k, v in runs[first].items())
         lines.append(f"the first failed, run {first}: {values}: {error}")
     return CommandResult(
         json_document={**document, "first_failure": failure},
-        lines=lines,
-        exit_status=int(len(samples.errors) == count),
+        output_lines=lines,
+        exit_status=int(len(samples.error_messages) == count),
     )

@@ -14,14 +14,14 @@ from numpy.typing import NDArray
 from jointfmu.quantity import Array
 
 from .joint_stiffness import JointStiffness
-from .placing import Placement, Springs, format_comment_header
+from .target_model import Springs, TargetModel, format_comment_header
 
 MATRIX27_TYPE_NUMBER, STIFFNESS_MATRIX_OPTION, DAMPING_MATRIX_OPTION = 27, 4, 5
 _UPPER_TRIANGLE_INDICES = np.triu_indices(12)
 """Row and column indices of the real constants C1 to C78 in the matrix."""
 
 
-def format_springs(springs: Springs, placement: Placement, comment_lines: Sequence[str]) -> str:
+def format_springs(springs: Springs, target_model: TargetModel, comment_lines: Sequence[str]) -> str:
     """Format the springs as an ANSYS archive: for each pair one stiffness and one damping element.
 
     comment_lines : lines for the head of the file
@@ -29,16 +29,18 @@ def format_springs(springs: Springs, placement: Placement, comment_lines: Sequen
     All stiffness elements come first. Pairs that agree to nine digits, the precision of the format, share a
     set of real constants.
     """
-    first = placement.first_free_number
-    first_set = placement.first_free_set_number
-    units = placement.units
+    first = target_model.first_free_number
+    first_set = target_model.first_free_set_number
+    units = target_model.unit_set
     count = len(springs.node_labels)
-    stiffness = placement.assign_to_axes(units.convert(springs.K_t, "N/m"), units.convert(springs.K_n, "N/m"))
-    damping = placement.assign_to_axes(
-        units.convert(springs.C_t, "N.s/m"), units.convert(springs.C_n, "N.s/m")
+    stiffness = target_model.assign_to_axes(
+        units.convert_from_si(springs.K_t, "N/m"), units.convert_from_si(springs.K_n, "N/m")
+    )
+    damping = target_model.assign_to_axes(
+        units.convert_from_si(springs.C_t, "N.s/m"), units.convert_from_si(springs.C_n, "N.s/m")
     )
     sets: dict[tuple[str, ...], int] = {}
-    reals = [_number_real_constant_set(sets, row, first_set) for row in (*stiffness, *damping)]
+    reals = [_assign_real_constant_set_number(sets, row, first_set) for row in (*stiffness, *damping)]
     types = np.repeat([first_set, first_set + 1], count)
     pairs = np.vstack([springs.node_labels, springs.node_labels])
     rows = zip(types, reals, range(first, first + 2 * count), pairs, strict=True)
@@ -46,14 +48,14 @@ def format_springs(springs: Springs, placement: Placement, comment_lines: Sequen
         *format_comment_header(comment_lines, "!"),
         "/PREP7",
         *(
-            _format_nodes(springs.node_labels, placement.model_coordinates(springs.position))
-            if placement.has_own_nodes
+            _format_nodes(springs.node_labels, target_model.model_coordinates(springs.position))
+            if target_model.defines_nodes
             else []
         ),
         *_format_element_type(first_set, STIFFNESS_MATRIX_OPTION),
         *_format_element_type(first_set + 1, DAMPING_MATRIX_OPTION),
         *_format_real_constants(
-            {number: compute_upper_triangle(np.array(v, dtype=np.float64)) for v, number in sets.items()}
+            {number: compute_matrix27_constants(np.array(v, dtype=np.float64)) for v, number in sets.items()}
         ),
         f"EBLOCK,19,SOLID,{first + 2 * count - 1:10d},{2 * count:10d}",
         "(19i10)",
@@ -64,19 +66,19 @@ def format_springs(springs: Springs, placement: Placement, comment_lines: Sequen
 
 
 def format_joint_stiffness(
-    stiffness: JointStiffness, placement: Placement, comment_lines: Sequence[str]
+    joint_stiffness: JointStiffness, target_model: TargetModel, comment_lines: Sequence[str]
 ) -> str:
     """Format a complete joint as an ANSYS archive: two nodes with one stiffness element.
 
     comment_lines : lines for the head of the file
     """
-    first, first_set = placement.first_free_number, placement.first_free_set_number
+    first, first_set = target_model.first_free_number, target_model.first_free_set_number
     labels = np.array([[first, first + 1]])
-    constants = stiffness.node_matrix(placement)[_UPPER_TRIANGLE_INDICES]
+    constants = joint_stiffness.matrix_between_nodes(target_model)[_UPPER_TRIANGLE_INDICES]
     lines = [
         *format_comment_header(comment_lines, "!"),
         "/PREP7",
-        *_format_nodes(labels, stiffness.model_positions(placement)),
+        *_format_nodes(labels, joint_stiffness.node_positions_in_model_units(target_model)),
         *_format_element_type(first_set, STIFFNESS_MATRIX_OPTION),
         *_format_real_constants({first_set: constants}),
         f"EBLOCK,19,SOLID,{first:10d},{1:10d}",
@@ -87,30 +89,35 @@ def format_joint_stiffness(
     return "\n".join(lines) + "\n"
 
 
-def compute_upper_triangle(spring_values: Array) -> Array:
-    """Upper triangle C1 to C78 (78) of the matrix of three springs (3) along x, y, z between two nodes."""
+def compute_matrix27_constants(spring_coefficients: Array) -> Array:
+    """Upper triangle C1 to C78 (78) of the element matrix of springs (3) along x, y, z between two nodes."""
     matrix = np.zeros((12, 12))
     axes = np.arange(3)
-    matrix[axes, axes] = matrix[axes + 6, axes + 6] = spring_values
-    matrix[axes, axes + 6] = matrix[axes + 6, axes] = -spring_values
+    matrix[axes, axes] = matrix[axes + 6, axes + 6] = spring_coefficients
+    matrix[axes, axes + 6] = matrix[axes + 6, axes] = -spring_coefficients
     return np.asarray(matrix[_UPPER_TRIANGLE_INDICES])
 
 
-def _number_real_constant_set(
-    set_numbers_by_values: dict[tuple[str, ...], int], spring_values: Array, first_set_number: int
+def _assign_real_constant_set_number(
+    set_number_by_coefficients: dict[tuple[str, ...], int], spring_coefficients: Array, first_set_number: int
 ) -> int:
     """Return the number of the set of real constants of three springs (3). New values get a new set."""
-    return set_numbers_by_values.setdefault(
-        tuple(f"{v:.8E}" for v in spring_values), first_set_number + len(set_numbers_by_values)
+    return set_number_by_coefficients.setdefault(
+        tuple(f"{v:.8E}" for v in spring_coefficients), first_set_number + len(set_number_by_coefficients)
     )
 
 
-def _format_real_constants(constants_by_number: Mapping[int, Array]) -> Iterable[str]:
+def _format_real_constants(real_constants_by_set_number: Mapping[int, Array]) -> Iterable[str]:
     """Format sets of real constants of ANSYS: {number: C1 to C78 (78)}."""
-    sizes = (len(constants_by_number), max(constants_by_number), _UPPER_TRIANGLE_INDICES[0].size, 7)
+    sizes = (
+        len(real_constants_by_set_number),
+        max(real_constants_by_set_number),
+        _UPPER_TRIANGLE_INDICES[0].size,
+        7,
+    )
     yield ",".join(["RLBLOCK", *(f"{size:8d}" for size in sizes)])
     yield from ("(2i8,6g16.9)", "(7g16.9)")
-    for number, constants in constants_by_number.items():
+    for number, constants in real_constants_by_set_number.items():
         cells = [f"{v:16.8E}" for v in constants]
         yield f"{number:8d}{len(cells):8d}" + "".join(cells[:6])
         yield from ("".join(cells[i : i + 7]) for i in range(6, len(cells), 7))
@@ -123,16 +130,16 @@ def _format_element_type(type_number: int, matrix_option: int) -> Iterable[str]:
     yield f"KEYOP,{type_number:9d},{3:3d},{matrix_option:9d}"
 
 
-def _format_nodes(node_labels: NDArray[np.int64], coordinates: Array) -> Iterable[str]:
+def _format_nodes(node_labels: NDArray[np.int64], node_coordinates: Array) -> Iterable[str]:
     """Format nodes with labels (n, 2) on side 1 and side 2, with their coordinates.
 
-    coordinates : (n, 3) of pairs of coincident nodes, or (2, 3) of the two nodes of one pair
+    node_coordinates : (n, 3) of pairs of coincident nodes, or (2, 3) of the two nodes of one pair
     """
     yield f"NBLOCK,6,SOLID,{node_labels.max():10d},{node_labels.size:10d}"
     yield "(3i9,6e21.13e3)"
     count = len(node_labels)
     for side in (0, 1):
-        of_side = coordinates if len(coordinates) == count else coordinates[side : side + 1]
+        of_side = node_coordinates if len(node_coordinates) == count else node_coordinates[side : side + 1]
         for node, xyz in zip(node_labels[:, side], of_side, strict=True):
             yield f"{node:9d}{0:9d}{0:9d}" + "".join(_format_exponential(v) for v in xyz)
     yield "N,R5.3,LOC,       -1,"
@@ -148,7 +155,7 @@ def _format_integers(integers: Iterable[int]) -> str:
     return "".join(f"{v:10d}" for v in integers)
 
 
-def _format_exponential(value: float) -> str:
+def _format_exponential(real_number: float) -> str:
     """Format a number as Fortran does with e21.13e3: three digits of exponent."""
-    mantissa, exponent = f"{value:.13E}".split("E")
+    mantissa, exponent = f"{real_number:.13E}".split("E")
     return f"{mantissa}E{int(exponent):+04d}".rjust(21)

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from jointfmu.mechanics.curve import Curve
 
     from .mesh import NodePairs
-    from .placing import Placement, Springs
     from .tables import LoadTable
+    from .target_model import Springs, TargetModel
 
 
 CONTENTS_BY_FORMAT = {
@@ -46,37 +46,40 @@ DEFAULT_MAX_LOAD_ERROR = 1e-3
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LoadCurveExport:
-    """Export of the load over the displacement of the complete joint, as a table.
+    """Export of the load of the complete joint as a function of displacement, as a table.
 
-    meaning       : content of the file in words
-    columns       : variables displacement, load and stiffness
-    table_name    : name of the table in a Modelica file
-    compute_table : (parameters, working point or None, largest error [1]) -> table
+    curve_meaning   : content of the file in words
+    curve_variables : variables displacement, load and stiffness
+    table_name      : name of the table in a Modelica file
+    compute_table   : (parameters, working point or None, largest error [1]) -> table
     """
 
-    meaning: str
-    columns: Sequence[Variable]
+    curve_meaning: str
+    curve_variables: Sequence[Variable]
     table_name: str
     compute_table: "Callable[[Any, Any, float], LoadTable]"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Exports:
-    """Exports that a kind of joint offers; None: the joint does not offer this content.
+class JointExports:
+    """Functions that export a kind of joint, one for each content (springs, contact law, load curve).
 
-    working_point_class : dataclass of declared quantities. The user must state the first quantity; the others
-                          have defaults
-    springs             : (parameters, working point, node pairs of the user or None, placement) -> springs,
-                          and their description; the working point is None if the pairs state the pressure
+    A function is None if the joint cannot export the content.
+
+    working_point_class : dataclass of the working point: load and temperature for the stiffness.
+                          The user must state the first quantity; the others have defaults
+    springs             : (parameters, working point, node pairs of the user or None, user's model) ->
+                          springs, and their description; the working point is None if the pairs state the
+                          pressure
     stiffness           : (parameters, working point) -> tangent stiffness (6, 6) [N/m, N, N.m/rad] of the
                           complete joint about the centroid of the contact
-    contact             : parameters -> pressure [Pa] over approach [m], and additional comment lines
-    curve               : load over displacement; it needs the working point if the joint has one
+    contact             : parameters -> pressure [Pa] as a function of approach [m], and comment lines
+    curve               : load as a function of displacement; needs the working point if the joint has one
     missing_reasons     : {content: why it cannot be written, and which content can}
     """
 
     working_point_class: type[object] | None = None
-    springs: "Callable[[Any, Any, NodePairs | None, Placement], tuple[Springs, str]] | None" = None
+    springs: "Callable[[Any, Any, NodePairs | None, TargetModel], tuple[Springs, str]] | None" = None
     stiffness: Callable[[Any, Any], Array] | None = None
     contact: "Callable[[Any], tuple[Curve, Sequence[str]]] | None" = None
     curve: LoadCurveExport | None = None
@@ -84,7 +87,7 @@ class Exports:
 
     @property
     def working_point(self) -> dict[str, str]:
-        """Quantities of the working point, the required one first: {name: meaning with unit and default}."""
+        """Quantities (load, temperature) that define the working point: {name: meaning, unit, default}."""
         declared = flatten_fields(self.working_point_class) if self.working_point_class else ()
         return {
             name: f"{item.metadata['doc']} [{item.metadata['unit']}]"
@@ -93,28 +96,29 @@ class Exports:
         }
 
 
-def load_exports(joint_name: str) -> Exports:
-    """Import the exports that a joint offers."""
+def load_joint_exports(joint_name: str) -> JointExports:
+    """Load the export functions of a joint, from the module `export` in its folder."""
     module = load_tool_module(KINDS[joint_name], "export")
-    exports: Exports = module.EXPORTS if module else Exports()
+    exports: JointExports = module.EXPORTS if module else JointExports()
     return exports
 
 
-def find_joints_with_export(export_kind: str) -> list[str]:
-    """Names of the joints that offer a content: springs, contact or curve."""
-    return [joint for joint in KINDS if getattr(load_exports(joint), export_kind)]
+def find_joints_with_export(export_content: str) -> list[str]:
+    """Names of the joints that can export a content: springs, contact or curve."""
+    return [joint for joint in KINDS if getattr(load_joint_exports(joint), export_content)]
 
 
-def require_export(joint_name: str, export_kind: str) -> Any:
-    """Return a joint's springs, contact or curve. Raises ValueError if the joint does not offer it."""
-    exports = load_exports(joint_name)
-    if export_kind in exports.missing_reasons:
+def require_export(joint_name: str, export_content: str) -> Any:
+    """Return the function that exports springs, contact or curve of a joint; ValueError if there is none."""
+    exports = load_joint_exports(joint_name)
+    if export_content in exports.missing_reasons:
         raise ValueError(
-            f"the {export_kind} of a {joint_name} cannot be exported: {exports.missing_reasons[export_kind]}"
+            f"the {export_content} of a {joint_name} cannot be exported: "
+            f"{exports.missing_reasons[export_content]}"
         )
-    if not getattr(exports, export_kind):
+    if not getattr(exports, export_content):
         raise ValueError(
-            f"{export_kind} of a {joint_name} cannot be written; allowed is a "
-            f"{', '.join(find_joints_with_export(export_kind))}"
+            f"{export_content} of a {joint_name} cannot be written; allowed is a "
+            f"{', '.join(find_joints_with_export(export_content))}"
         )
-    return getattr(exports, export_kind)
+    return getattr(exports, export_content)

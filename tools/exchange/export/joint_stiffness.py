@@ -7,11 +7,11 @@ import numpy as np
 
 from jointfmu.quantity import Array
 
-from .placing import AXIS_ORDER, Placement
+from .target_model import AXIS_ORDER, TargetModel
 
 DOF_NAMES = ("x", "y", "z", "rx", "ry", "rz")
 """Degrees of freedom of a node: displacements along x, y, z and rotations about x, y, z."""
-MAX_ROUND_OFF = 1e-9
+MAX_RELATIVE_ROUND_OFF = 1e-9
 """Magnitude of K_ij over sqrt(K_ii K_jj) [1] that counts as zero: exported numbers have ten digits."""
 
 
@@ -19,8 +19,8 @@ MAX_ROUND_OFF = 1e-9
 class JointStiffness:
     """Stiffness matrix of a complete joint: side 2 relative to side 1, about the centroid of the contact.
 
-    stiffness_matrix : symmetric K (6, 6) [N/m, N, N.m/rad] in the frame of the joint: force and moment that
-                       move side 2 at the centroid, over its relative displacement and rotation
+    stiffness_matrix : symmetric K (6, 6) [N/m, N, N.m/rad] in the frame of the joint: K times displacement
+                       and rotation of side 2 relative to side 1 is the force and moment that move side 2
     node_positions   : (2, 3) [m] of the nodes of side 1 and side 2 from the centroid, along the model's axes.
                        Each node moves with the attachment of its side as a rigid body
     """
@@ -29,43 +29,45 @@ class JointStiffness:
     node_positions: Array
 
     @classmethod
-    def from_tangent(cls, tangent_stiffness: Array, node_positions: Array) -> "JointStiffness":
-        """Stiffness matrix that is the symmetric part of a tangent stiffness (6, 6), without round-off."""
+    def from_tangent_stiffness(cls, tangent_stiffness: Array, node_positions: Array) -> "JointStiffness":
+        """Take the symmetric part of a tangent stiffness (6, 6), and set entries of round-off to zero."""
         K = 0.5 * (tangent_stiffness + tangent_stiffness.T)
         size = np.sqrt(np.abs(np.diag(K)))
-        return cls(np.where(np.abs(K) > MAX_ROUND_OFF * np.outer(size, size), K, 0.0), node_positions)
+        return cls(
+            np.where(np.abs(K) > MAX_RELATIVE_ROUND_OFF * np.outer(size, size), K, 0.0), node_positions
+        )
 
     @property
-    def max_coupling(self) -> float:
-        """Largest |K_ij|/sqrt(K_ii K_jj) [1] of two different directions."""
+    def max_relative_coupling(self) -> float:
+        """Largest |K_ij|/sqrt(K_ii K_jj) [1] of the stiffness K for two different degrees of freedom i, j."""
         size = np.sqrt(np.diag(self.stiffness_matrix))
         return float(np.max(np.abs(self.stiffness_matrix / np.outer(size, size) - np.eye(6))))
 
-    def model_matrix(self, placement: Placement) -> Array:
+    def matrix_in_model_axes(self, target_model: TargetModel) -> Array:
         """Stiffness K (6, 6) about the centroid, along the model's axes and in its units."""
-        axes = list(AXIS_ORDER[placement.normal_axis])
+        axes = list(AXIS_ORDER[target_model.joint_normal_axis])
         order = [*axes, *(axis + 3 for axis in axes)]
-        length = placement.units.convert(1.0, "m")
+        length = target_model.unit_set.convert_from_si(1.0, "m")
         exponent = np.repeat([-0.5, 0.5], 3)
         K = np.zeros((6, 6))
         K[np.ix_(order, order)] = self.stiffness_matrix * length ** np.add.outer(exponent, exponent)
         return K
 
-    def node_matrix(self, placement: Placement) -> Array:
+    def matrix_between_nodes(self, target_model: TargetModel) -> Array:
         """Stiffness K (12, 12) between the nodes of side 1 and side 2, in the model's axes and units.
 
         The motion of the centroid is u + theta x (-r) for a node at r with displacement u and rotation theta
         (rigid arm). So K_nodes = B^T K B with B = [-T(r1), T(r2)].
         """
-        arms = [rigid_arm(placement.units.convert(r, "m")) for r in self.node_positions]
+        arms = [rigid_arm_matrix(target_model.unit_set.convert_from_si(r, "m")) for r in self.node_positions]
         B = np.hstack([-arms[0], arms[1]])
-        return np.asarray(B.T @ self.model_matrix(placement) @ B)
+        return np.asarray(B.T @ self.matrix_in_model_axes(target_model) @ B)
 
-    def model_positions(self, placement: Placement) -> Array:
+    def node_positions_in_model_units(self, target_model: TargetModel) -> Array:
         """Positions (2, 3) of the nodes in the units of the model."""
-        return placement.units.convert(self.node_positions, "m")
+        return target_model.unit_set.convert_from_si(self.node_positions, "m")
 
-    def totals(self) -> dict[str, float]:
+    def diagonal_stiffness(self) -> dict[str, float]:
         """{name: diagonal entry of K [N/m, N.m/rad] in the frame of the joint, about the centroid}."""
         return {
             f"K_{name if len(name) > 1 else 2 * name}": float(value)
@@ -73,7 +75,7 @@ class JointStiffness:
         }
 
 
-def rigid_arm(node_position: Array) -> Array:
+def rigid_arm_matrix(node_position: Array) -> Array:
     """Matrix T (6, 6) of a rigid arm from a node at r: motion of the origin = T times motion of the node."""
     x, y, z = node_position
     T = np.eye(6)
@@ -81,19 +83,21 @@ def rigid_arm(node_position: Array) -> Array:
     return T
 
 
-def describe(stiffness: JointStiffness, placement: Placement) -> Sequence[str]:
+def describe_joint_stiffness(joint_stiffness: JointStiffness, target_model: TargetModel) -> Sequence[str]:
     """Describe the stiffness matrix in comment lines: meaning, frame and point, positions of the nodes."""
-    axes = ["xyz"[axis] for axis in AXIS_ORDER[placement.normal_axis]]
-    diagonal = ", ".join(f"{name} {value:.9g}" for name, value in stiffness.totals().items())
+    axes = ["xyz"[axis] for axis in AXIS_ORDER[target_model.joint_normal_axis]]
+    diagonal = ", ".join(
+        f"{name} {value:.9g}" for name, value in joint_stiffness.diagonal_stiffness().items()
+    )
     nodes = [
-        f"node {placement.first_free_number + side} moves with the attachment of side {side + 1} as a rigid "
-        f"body; from the centroid: {', '.join(f'{value:.9g}' for value in position)}"
-        for side, position in enumerate(stiffness.model_positions(placement))
+        f"node {target_model.first_free_number + side} moves with the attachment of side {side + 1} as a "
+        f"rigid body; from the centroid: {', '.join(f'{value:.9g}' for value in position)}"
+        for side, position in enumerate(joint_stiffness.node_positions_in_model_units(target_model))
     ]
     return [
         "stiffness: complete joint with interface, members and bolts; symmetric part of the tangent",
         f"stiffness about the centroid of the contact, joint's x, y, z [N/m, N.m/rad]: {diagonal}",
-        f"largest coupling K_ij/sqrt(K_ii K_jj): {stiffness.max_coupling:.3g}",
+        f"largest coupling K_ij/sqrt(K_ii K_jj): {joint_stiffness.max_relative_coupling:.3g}",
         f"frame: the joint's x (along the bolt rows), y, z (normal, from side 1 to side 2) are the model's "
         f"{', '.join(axes)}; origin: centroid of the contact",
         *nodes,

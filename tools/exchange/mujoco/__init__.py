@@ -5,7 +5,7 @@ from pathlib import Path
 
 import fmpy
 from jointfmu_fmu_src.archive import staging_folder
-from jointfmu_fmu_src.native.compiled.compiler import compile_libraries, library_file_name
+from jointfmu_fmu_src.native.compiled.compiler import compile_libraries, make_library_file_name
 
 from jointfmu.files import archives
 
@@ -37,7 +37,7 @@ def plugin(fmu: str | Path, out: str | Path) -> Path:
     (content,) = compile_libraries(
         name, files, units, [platform], linker_options=(f"-I{include}", str(library))
     ).values()
-    target = Path(out) / library_file_name(name, platform)
+    target = Path(out) / make_library_file_name(name, platform)
     with staging_folder(target) as work:
         (work / target.name).write_bytes(content)
     return target

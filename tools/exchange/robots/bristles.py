@@ -19,28 +19,29 @@ import numpy as np
 
 from .transmission import Transmission
 
-NO_CONTROL_INPUT = 16
+NO_CONTROL_INPUT_TYPE = 16
 """mjINPUT_NONE of MuJoCo: a `dcmotor` without control input."""
 
 
-def lugre_parameters(
-    drive: Transmission, motor_inertia: float, step: float
+def compute_lugre_parameters(
+    drive: Transmission, motor_inertia: float, time_step: float
 ) -> tuple[float, float, float, float, float]:
-    """Parameters of the attribute `lugre`, for a motor inertia [kg.m2] and a time step [s].
+    """LuGre parameters of the motor friction in MuJoCo, for a motor inertia [kg.m2] and a time step [s].
 
-    Returns stiffness [N.m/rad], damping [N.m.s/rad], dry and static friction [N.m], Stribeck speed [rad/s].
+    Returns stiffness [N.m/rad] and damping [N.m.s/rad] of the bristles, Coulomb and static friction [N.m],
+    Stribeck speed [rad/s].
     """
-    stiffness = min(drive.static_friction / drive.presliding_angle, motor_inertia / step**2)
+    stiffness = min(drive.static_friction / drive.presliding_angle, motor_inertia / time_step**2)
     damping = max(2.0 * float(np.sqrt(stiffness * motor_inertia)) - drive.viscous_friction, 0.0)
     return stiffness, damping, drive.dry_friction, drive.static_friction, drive.stribeck_speed
 
 
-def presliding_angle(drive: Transmission, motor_inertia: float, step: float) -> float:
-    """Motor angle [rad] at which friction reaches 1 - 1/e of its limit.
+def compute_presliding_angle(drive: Transmission, motor_inertia: float, time_step: float) -> float:
+    """Motor angle [rad] at which the LuGre friction in MuJoCo reaches 1 - 1/e of its limit.
 
-    It is not smaller than `presliding` of the drive: a stable step limits the stiffness of the bristles.
+    The angle is at least that of the drive: a stable time step limits the stiffness of the bristles.
     """
-    return drive.static_friction / lugre_parameters(drive, motor_inertia, step)[0]
+    return drive.static_friction / compute_lugre_parameters(drive, motor_inertia, time_step)[0]
 
 
 def is_integrator_stable(simulation_options: Any) -> bool:
@@ -50,26 +51,30 @@ def is_integrator_stable(simulation_options: Any) -> bool:
     return bool(simulation_options.integrator != mujoco.mjtIntegrator.mjINT_RK4)
 
 
-def format_friction(drive: Transmission, joint: str, motor_inertia: float, step: float) -> str:
+def format_friction(
+    drive: Transmission, motor_joint_name: str, motor_inertia: float, time_step: float
+) -> str:
     """MJCF element of the motor friction, a child of `<actuator>`."""
-    lugre = " ".join(f"{number:.9g}" for number in lugre_parameters(drive, motor_inertia, step))
+    lugre = " ".join(f"{number:.9g}" for number in compute_lugre_parameters(drive, motor_inertia, time_step))
     return (
-        f'<dcmotor name="friction" joint={quoteattr(joint)} input="none" resistance="1" motorconst="0 0" '
-        f'saturation="{drive.static_friction:.9g} 0 0" lugre="{lugre}"/>'
+        f'<dcmotor name="friction" joint={quoteattr(motor_joint_name)} input="none" resistance="1" '
+        f'motorconst="0 0" saturation="{drive.static_friction:.9g} 0 0" lugre="{lugre}"/>'
     )
 
 
-def add_friction(robot_spec: Any, drive: Transmission, joint: str, motor_inertia: float, step: float) -> None:
+def add_friction(
+    robot_spec: Any, drive: Transmission, motor_joint_name: str, motor_inertia: float, time_step: float
+) -> None:
     """Add the dry friction of a drive to the motor joint of an MjSpec."""
     import mujoco
 
     actuator = robot_spec.add_actuator(
-        name=f"{joint}_friction", target=joint, trntype=mujoco.mjtTrn.mjTRN_JOINT
+        name=f"{motor_joint_name}_friction", target=motor_joint_name, trntype=mujoco.mjtTrn.mjTRN_JOINT
     )
     actuator.set_to_dcmotor(
         motorconst=[0.0, 0.0],
         resistance=1.0,
         saturation=[drive.static_friction, 0.0, 0.0],
-        lugre=lugre_parameters(drive, motor_inertia, step),
-        ctrlspec=NO_CONTROL_INPUT,
+        lugre=compute_lugre_parameters(drive, motor_inertia, time_step),
+        ctrlspec=NO_CONTROL_INPUT_TYPE,
     )

@@ -26,7 +26,7 @@ MOTOR_NAME_SUFFIX = "_motor"
 """Suffix of the name of a motor joint, after the name of the driven joint."""
 MOTOR_BODY_NAME_PREFIX = "drive_motors"
 """Prefix of the names of the bodies that carry the motors."""
-_READING_ADVICE = {
+_ADVICE_BY_MUJOCO_ERROR = {
     "mjMINVAL": "; state the mass and the inertia of this link in its <inertial>",
     "Error opening file": "; expected this file in the folder of the robot file, or in its meshdir",
 }
@@ -43,72 +43,72 @@ _MOTOR_BODY_MASS = 1e-12
 class ElasticAxis:
     """Joint of a robot with its elastic drive.
 
-    rotor_inertia : rotor inertia at the output [kg.m2]: that of the motor times the square of the ratio
-    notes         : texts on deviations from the robot file or from the drive
+    rotor_inertia   : rotor inertia at the output [kg.m2]: that of the motor times the square of the ratio
+    deviation_notes : texts on deviations from the robot file or from the drive
     """
 
-    joint: str
+    joint_name: str
     drive: Transmission
-    spring: FittedSpring
+    fitted_spring: FittedSpring
     rotor_inertia: float
-    notes: tuple[str, ...] = ()
+    deviation_notes: tuple[str, ...] = ()
 
     def solve_wind_up(self, torque: float) -> float:
         """Wind-up [rad] at a torque [N.m] by the law of the drive, for first loading from rest."""
         return float(self.drive.compute_wind_up([torque])[0])
 
-    def stiffness(self, torque: float) -> float:
+    def stiffness_at_torque(self, torque: float) -> float:
         """Stiffness [N.m/rad] of small vibrations about a torque [N.m], with all sliders sticking."""
         reversal = float(np.copysign(_SMALL_REVERSAL_OVER_RATED_TORQUE * self.drive.rated_torque, torque))
         before, after = self.drive.compute_wind_up([torque, torque - reversal])
         return reversal / float(before - after)
 
-    def overload_warnings(self, torque: float, pose_text: str = "") -> Iterator[str]:
+    def list_overload_warnings(self, torque: float, pose_text: str = "") -> Iterator[str]:
         """Yield a warning if a torque [N.m] exceeds the rated or the largest torque of the drive.
 
         pose_text : text on the pose of the torque, before the warning
         """
         drive, size = self.drive, abs(torque)
-        prefix = f"{self.joint}: {pose_text}{size:.4g} N.m is beyond the"
+        prefix = f"{self.joint_name}: {pose_text}{size:.4g} N.m is beyond the"
         if size > drive.max_torque:
-            yield f"{prefix} max_torque, {drive.max_torque:g} N.m, of {drive.name}, where its law ends"
+            yield f"{prefix} max_torque, {drive.max_torque:g} N.m, of {drive.drive_name}, where its law ends"
         elif size > drive.rated_torque:
-            yield f"{prefix} rated torque, {drive.rated_torque:g} N.m, of {drive.name}"
+            yield f"{prefix} rated torque, {drive.rated_torque:g} N.m, of {drive.drive_name}"
 
 
-def read_robot(path: str | Path) -> Any:
+def read_robot(robot_path: str | Path) -> Any:
     """Read a robot (MJCF or URDF) as an MjSpec of MuJoCo; raises ValueError if that fails."""
     import mujoco
 
     check_mujoco_version()
     expected = "a robot (MJCF or URDF)"
-    check_regular_file(path, expected)
-    if not Path(path).exists():
-        raise ValueError(f"{path}: cannot be read (no such file); expected {expected}")
+    check_regular_file(robot_path, expected)
+    if not Path(robot_path).exists():
+        raise ValueError(f"{robot_path}: cannot be read (no such file); expected {expected}")
     try:
-        spec = mujoco.MjSpec.from_file(str(path))
+        spec = mujoco.MjSpec.from_file(str(robot_path))
         spec.compiler.fusestatic = False  # keep the tool frames of a URDF, which are fixed links
         spec.compile()
     except (ValueError, OSError, mujoco.FatalError) as error:
         line = ", ".join(filter(None, map(str.strip, str(error).splitlines()))).removeprefix("Error: ")
-        advice = next((text for part, text in _READING_ADVICE.items() if part in line), "")
-        raise ValueError(f"{path}: cannot be read as {expected}: {line}{advice}") from None
-    _check_joint_names(path, spec)
+        advice = next((text for part, text in _ADVICE_BY_MUJOCO_ERROR.items() if part in line), "")
+        raise ValueError(f"{robot_path}: cannot be read as {expected}: {line}{advice}") from None
+    _check_joint_names(robot_path, spec)
     return spec
 
 
-def _check_joint_names(path: str | Path, robot_spec: Any) -> None:
+def _check_joint_names(robot_path: str | Path, robot_spec: Any) -> None:
     """Raise ValueError if joints of a URDF have the same name: MuJoCo keeps only one of these names."""
     unnamed = [joint.parent.name for joint in robot_spec.joints if not joint.name]
-    if unnamed and b"<robot" in Path(path).read_bytes():
+    if unnamed and b"<robot" in Path(robot_path).read_bytes():
         raise ValueError(
-            f"{path}: the joint of link {unnamed[0]!r} has the name of another joint; "
+            f"{robot_path}: the joint of link {unnamed[0]!r} has the name of another joint; "
             "expected a name of its own"
         )
 
 
-def make_axes(robot_spec: Any, drives: Mapping[str, Transmission]) -> list[ElasticAxis]:
-    """Make the elastic axes of the joints in `drives`, in the order of the robot.
+def make_axes(robot_spec: Any, drive_by_joint: Mapping[str, Transmission]) -> list[ElasticAxis]:
+    """Make the elastic axes of the joints in `drive_by_joint`, in the order of the robot.
 
     Raises ValueError for a name that is not a hinge of the robot.
     """
@@ -117,7 +117,7 @@ def make_axes(robot_spec: Any, drives: Mapping[str, Transmission]) -> list[Elast
     model = robot_spec.compile()
     hinges = [model.joint(i) for i in range(model.njnt) if model.jnt_type[i] == mujoco.mjtJoint.mjJNT_HINGE]
     known = [joint.name for joint in hinges]
-    for name in drives:
+    for name in drive_by_joint:
         if name not in known:
             raise ValueError(
                 f"{name!r} is not a hinge of the robot; allowed are {', '.join(filter(None, known))}"
@@ -126,8 +126,8 @@ def make_axes(robot_spec: Any, drives: Mapping[str, Transmission]) -> list[Elast
     fit_drive = cache(fit_spring)  # axes may share a drive
     elastic_axes = []
     for joint in hinges:
-        if joint.name in drives:
-            drive, dof = drives[joint.name], joint.dofadr[0]
+        if joint.name in drive_by_joint:
+            drive, dof = drive_by_joint[joint.name], joint.dofadr[0]
             rotor, notes = float(model.dof_armature[dof]), list[str]()
             if rotor <= 0.0:
                 rotor = float(matrix[dof, dof])
@@ -136,7 +136,7 @@ def make_axes(robot_spec: Any, drives: Mapping[str, Transmission]) -> list[Elast
                     "moves in the reference pose of the file"
                 )
             if drive.static_friction and bristles.is_integrator_stable(model.opt):
-                angle = bristles.presliding_angle(drive, rotor / drive.ratio**2, model.opt.timestep)
+                angle = bristles.compute_presliding_angle(drive, rotor / drive.ratio**2, model.opt.timestep)
                 if angle > 1.01 * drive.presliding_angle:
                     notes.append(
                         f"friction builds up over {angle:.3g} rad of the motor in the MJCF, because its "
@@ -148,17 +148,17 @@ def make_axes(robot_spec: Any, drives: Mapping[str, Transmission]) -> list[Elast
     return elastic_axes
 
 
-def compute_mass_matrix(model: Any, pose: Array) -> Array:
+def compute_mass_matrix(robot_model: Any, robot_pose: Array) -> Array:
     """Mass matrix (n, n) of all degrees of freedom at a pose."""
     import mujoco
 
-    data = mujoco.MjData(model)
-    data.qpos[:] = pose
-    mujoco.mj_forward(model, data)
+    data = mujoco.MjData(robot_model)
+    data.qpos[:] = robot_pose
+    mujoco.mj_forward(robot_model, data)
     columns = []
-    for unit in np.eye(model.nv):
-        column = np.zeros(model.nv)
-        mujoco.mj_mulM(model, data, column, unit)
+    for unit in np.eye(robot_model.nv):
+        column = np.zeros(robot_model.nv)
+        mujoco.mj_mulM(robot_model, data, column, unit)
         columns.append(column)
     return np.array(columns)
 
@@ -192,29 +192,34 @@ def add_drives(robot_spec: Any, axes_with_drive: list[ElasticAxis], has_springs:
                 name=name, stiffness=stiffness, damping=damping, springlength=[0.0, 0.0]
             )
             tendon.springyield = limit
-            tendon.wrap_joint(axis.joint, 1.0)
-            tendon.wrap_joint(axis.joint + MOTOR_NAME_SUFFIX, -1.0 / axis.drive.ratio)
+            tendon.wrap_joint(axis.joint_name, 1.0)
+            tendon.wrap_joint(axis.joint_name + MOTOR_NAME_SUFFIX, -1.0 / axis.drive.ratio)
     return elastic_spec
 
 
-def _list_tendons(axis: ElasticAxis) -> Iterator[tuple[str, list[float], list[float], float]]:
-    """List the MuJoCo tendons of a drive: name, stiffness, damping, and wind-up [rad] at which it slips."""
-    fitted, zero = axis.spring, [0.0, 0.0, 0.0]
-    name = f"{axis.joint}_drive"
-    yield name, [fitted.linear_stiffness, 0.0, fitted.cubic_stiffness], [axis.drive.damping, 0.0, 0.0], 0.0
+def _list_tendons(robot_axis: ElasticAxis) -> Iterator[tuple[str, list[float], list[float], float]]:
+    """List the MuJoCo tendons of a drive: name, stiffness, damping, wind-up [rad] at which each yields."""
+    fitted, zero = robot_axis.fitted_spring, [0.0, 0.0, 0.0]
+    name = f"{robot_axis.joint_name}_drive"
+    yield (
+        name,
+        [fitted.linear_stiffness, 0.0, fitted.cubic_stiffness],
+        [robot_axis.drive.output_damping, 0.0, 0.0],
+        0.0,
+    )
     for i, (spring, limit) in enumerate(fitted.yielding_springs, 1):
         yield f"{name}_slider{i}", [spring, 0.0, 0.0], zero, limit
 
 
-def _add_motor_body(robot_spec: Any, name: str) -> Any:
-    """Add a body for motor joints to the world. It carries no other body: rotors act as armatures do."""
-    body = robot_spec.worldbody.add_body(name=name)
+def _add_motor_body(robot_spec: Any, body_name: str) -> Any:
+    """Add a body for motor joints to the world. No link moves with this body: the rotors are armatures."""
+    body = robot_spec.worldbody.add_body(name=body_name)
     body.mass, body.inertia, body.explicitinertial = _MOTOR_BODY_MASS, [_MOTOR_BODY_MASS] * 3, True
     body.ipos, body.iquat = [0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]
     return body
 
 
-def _add_motor(robot_spec: Any, motor_body: Any, axis: ElasticAxis, rigid_model: Any) -> Any:
+def _add_motor(robot_spec: Any, motor_body: Any, robot_axis: ElasticAxis, rigid_model: Any) -> Any:
     """Add the motor of an axis, whose coordinate is the motor angle [rad], and move the actuators to it.
 
     The force limit of the robot's joint is applied to each actuator, not to the motor joint as a whole, as
@@ -225,15 +230,21 @@ def _add_motor(robot_spec: Any, motor_body: Any, axis: ElasticAxis, rigid_model:
     """
     import mujoco
 
-    joint, ratio, number = robot_spec.joint(axis.joint), axis.drive.ratio, rigid_model.joint(axis.joint).id
-    motor = motor_body.add_joint(name=axis.joint + MOTOR_NAME_SUFFIX, type=mujoco.mjtJoint.mjJNT_SLIDE)
-    motor.armature = axis.rotor_inertia / ratio**2
+    joint, ratio, number = (
+        robot_spec.joint(robot_axis.joint_name),
+        robot_axis.drive.ratio,
+        rigid_model.joint(robot_axis.joint_name).id,
+    )
+    motor = motor_body.add_joint(
+        name=robot_axis.joint_name + MOTOR_NAME_SUFFIX, type=mujoco.mjtJoint.mjJNT_SLIDE
+    )
+    motor.armature = robot_axis.rotor_inertia / ratio**2
     joint.armature = 0.0
     for actuator in robot_spec.actuators:
-        if actuator.trntype == mujoco.mjtTrn.mjTRN_JOINT and actuator.target == axis.joint:
+        if actuator.trntype == mujoco.mjtTrn.mjTRN_JOINT and actuator.target == robot_axis.joint_name:
             if rigid_model.jnt_actfrclimited[number] and actuator.gear[0]:
                 _limit_force(actuator, rigid_model.jnt_actfrcrange[number] / actuator.gear[0])
-            actuator.target = axis.joint + MOTOR_NAME_SUFFIX
+            actuator.target = robot_axis.joint_name + MOTOR_NAME_SUFFIX
             actuator.gear = np.asarray(actuator.gear) / ratio
     return motor
 
@@ -247,14 +258,14 @@ def _limit_force(actuator: Any, force_range: Array) -> None:
     actuator.forcelimited, actuator.forcerange = 1, [low, high]
 
 
-def coordinate_unit(model: Any, name: str) -> str:
+def coordinate_unit(robot_model: Any, joint_name: str) -> str:
     """Unit of the coordinate of a hinge (rad) or a slide (m)."""
     import mujoco
 
-    return "m" if model.joint(name).type[0] == mujoco.mjtJoint.mjJNT_SLIDE else "rad"
+    return "m" if robot_model.joint(joint_name).type[0] == mujoco.mjtJoint.mjJNT_SLIDE else "rad"
 
 
-def joint_positions(model: Any, position_texts: Mapping[str, str]) -> Array:
+def make_robot_pose(robot_model: Any, position_texts: Mapping[str, str]) -> Array:
     """Joint positions of the rigid robot: first keyframe or default pose, with given angles replaced.
 
     position_texts : {joint: text of its position [rad or m]}
@@ -264,11 +275,11 @@ def joint_positions(model: Any, position_texts: Mapping[str, str]) -> Array:
     import mujoco
 
     single = {int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE)}
-    pose = np.array(model.key_qpos[0] if model.nkey else model.qpos0)
+    pose = np.array(robot_model.key_qpos[0] if robot_model.nkey else robot_model.qpos0)
     known = {
-        model.joint(i).name: int(model.jnt_qposadr[i])
-        for i in range(model.njnt)
-        if int(model.jnt_type[i]) in single
+        robot_model.joint(i).name: int(robot_model.jnt_qposadr[i])
+        for i in range(robot_model.njnt)
+        if int(robot_model.jnt_type[i]) in single
     }
     for name, text in position_texts.items():
         if name not in known:
@@ -277,50 +288,50 @@ def joint_positions(model: Any, position_texts: Mapping[str, str]) -> Array:
             value = float(text)
         except ValueError:
             raise ValueError(f"--pose {name} = {text!r} is not a number") from None
-        joint = model.joint(name).id
-        low, high = model.jnt_range[joint] if model.jnt_limited[joint] else (-np.inf, np.inf)
+        joint = robot_model.joint(name).id
+        low, high = robot_model.jnt_range[joint] if robot_model.jnt_limited[joint] else (-np.inf, np.inf)
         if not (np.isfinite(value) and low <= value <= high):
-            allowed = f"[{low:g}, {high:g}]" if model.jnt_limited[joint] else "(-inf, inf)"
+            allowed = f"[{low:g}, {high:g}]" if robot_model.jnt_limited[joint] else "(-inf, inf)"
             raise ValueError(
-                f"--pose {name} = {text} {coordinate_unit(model, name)} is outside {allowed} "
-                f"{coordinate_unit(model, name)}"
+                f"--pose {name} = {text} {coordinate_unit(robot_model, name)} is outside {allowed} "
+                f"{coordinate_unit(robot_model, name)}"
             )
         pose[known[name]] = value
     return pose
 
 
-def find_body(model: Any, name: str | None, axes_with_drive: list[ElasticAxis]) -> int:
+def find_body(robot_model: Any, body_name: str | None, axes_with_drive: list[ElasticAxis]) -> int:
     """Index of the body with a name; None: the last body of the chain behind the last axis."""
-    known = [model.body(i).name for i in range(model.nbody)]
-    if name is not None:
-        if name not in known:
-            raise ValueError(f"--tip {name!r}: no body of the robot; allowed are {', '.join(known[1:])}")
-        return known.index(name)
-    end = int(model.jnt_bodyid[model.joint(axes_with_drive[-1].joint).id])
-    while (children := np.flatnonzero(model.body_parentid[1:] == end) + 1).size:
+    known = [robot_model.body(i).name for i in range(robot_model.nbody)]
+    if body_name is not None:
+        if body_name not in known:
+            raise ValueError(f"--tip {body_name!r}: no body of the robot; allowed are {', '.join(known[1:])}")
+        return known.index(body_name)
+    end = int(robot_model.jnt_bodyid[robot_model.joint(axes_with_drive[-1].joint_name).id])
+    while (children := np.flatnonzero(robot_model.body_parentid[1:] == end) + 1).size:
         end = int(children[-1])
     return end
 
 
-def make_mesh_folders_absolute(robot_spec: Any, path: Path) -> None:
+def make_mesh_folders_absolute(robot_spec: Any, robot_path: Path) -> None:
     """Make the folders of meshes and textures absolute, so that the robot compiles in every folder."""
     for name in ASSET_FOLDERS:
-        setattr(robot_spec, name, str((path.parent / getattr(robot_spec, name)).resolve()))
+        setattr(robot_spec, name, str((robot_path.parent / getattr(robot_spec, name)).resolve()))
 
 
-def format_with_relative_folders(text: str, robot_spec: Any, out: Path) -> str:
+def format_with_relative_folders(mjcf_text: str, robot_spec: Any, output_folder: Path) -> str:
     """MJCF text with the folders of meshes and textures relative to the folder of the file.
 
-    text       : MJCF of `robot_spec`, whose folders are absolute
-    out        : folder of the file
+    mjcf_text     : MJCF of `robot_spec`, whose folders are absolute
+    output_folder : folder of the file
 
     On Windows, a folder on another drive stays absolute.
     """
     for name in ASSET_FOLDERS:
         folder = getattr(robot_spec, name)
         with suppress(ValueError):  # another drive
-            relative = Path(os.path.relpath(folder, out.resolve())).as_posix()
+            relative = Path(os.path.relpath(folder, output_folder.resolve())).as_posix()
             for attribute in (name, "assetdir"):
                 pattern = rf'\b{attribute}="{re.escape(escape(folder))}[/\\]?"'
-                text = re.sub(pattern, lambda _: f"{attribute}={quoteattr(relative + '/')}", text)  # noqa: B023
-    return text
+                mjcf_text = re.sub(pattern, lambda _: f"{attribute}={quoteattr(relative + '/')}", mjcf_text)  # noqa: B023
+    return mjcf_text

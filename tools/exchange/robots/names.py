@@ -3,15 +3,20 @@
 import re
 from collections.abc import Mapping
 
-from jointfmu_fmu_src.naming import is_reserved
+from jointfmu_fmu_src.naming import is_reserved_word
 
 from jointfmu.parameters import ParameterFile, format_parameter_file
 
 
-def make_identifier(name: str) -> str:
+def make_identifier(original_name: str) -> str:
     """Convert a name to a valid identifier of letters, digits and _ that is no keyword or device name."""
     return re.sub(
-        r"\W", "_", f"_{name}" if not name[:1].isalpha() or is_reserved(name) else name, flags=re.ASCII
+        r"\W",
+        "_",
+        f"_{original_name}"
+        if not original_name[:1].isalpha() or is_reserved_word(original_name)
+        else original_name,
+        flags=re.ASCII,
     )
 
 

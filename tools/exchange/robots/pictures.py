@@ -10,7 +10,7 @@ from jointfmu.quantity import Array
 
 from ...common import plots
 from .elastic import ElasticAxis
-from .poses import Ringing, compute_frequencies, compute_torques, compute_weight_deflection
+from .poses import Ringing, compute_frequencies, compute_weight_deflection, compute_weight_torques
 
 if TYPE_CHECKING:
     from mujoco import MjModel
@@ -21,108 +21,122 @@ PAYLOAD_POINT_COUNT = 11
 """Number of payloads on the axis of the plot [1]."""
 FIGURE_SIZE = (9.0, 3.8)
 """Width and height of a figure [inch]."""
-CONSTANT_FREQUENCY_RELATIVE_CHANGE = 1e-6
+MAX_CHANGE_OF_CONSTANT_FREQUENCY = 1e-6
 """Relative change [1] of a frequency over the poses below which it is drawn as constant: it is rounding."""
 MIN_WEIGHT_OVER_RATED_TORQUE = 1e-9
 """Weight torque over the rated torque [1] below which an axis counts as not loaded: it is rounding."""
 
 
-def select_grid_axes(axes: Sequence[ElasticAxis]) -> Sequence[ElasticAxis]:
+def select_grid_axes(robot_axes: Sequence[ElasticAxis]) -> Sequence[ElasticAxis]:
     """Axes of the pose grid: the second and third of an arm, which change weight torques and inertia most.
 
     An arm with two axes or one: all of them.
     """
-    return axes[1:3] if len(axes) > 2 else axes[-2:]
+    return robot_axes[1:3] if len(robot_axes) > 2 else robot_axes[-2:]
 
 
-def list_angles(model: "MjModel", axis: ElasticAxis) -> Array:
+def list_grid_angles(robot_model: "MjModel", robot_axis: ElasticAxis) -> Array:
     """Angles [rad] of an axis in the grid of poses, over its range; a full turn for an unlimited axis."""
-    joint = model.joint(axis.joint)
-    low, high = model.jnt_range[joint.id] if model.jnt_limited[joint.id] else (-np.pi, np.pi)
+    joint = robot_model.joint(robot_axis.joint_name)
+    low, high = robot_model.jnt_range[joint.id] if robot_model.jnt_limited[joint.id] else (-np.pi, np.pi)
     return np.linspace(low, high, ANGLES_PER_GRID_AXIS)
 
 
 def compute_frequencies_over_grid(
-    model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, payload: float, tip_body: int
+    robot_model: "MjModel",
+    robot_axes: Sequence[ElasticAxis],
+    robot_pose: Array,
+    payload_mass: float,
+    tip_body: int,
 ) -> tuple[list[Array], Array]:
     """Angles [rad] of the grid axes, and natural frequencies (..., n) [Hz] at each pose of the grid.
 
-    The joints outside the grid keep their position in `pose`.
+    The joints outside the grid keep their position in `robot_pose`.
     """
-    grid = [list_angles(model, axis) for axis in select_grid_axes(axes)]
-    poses = grid_poses(model, axes, pose, grid)
-    rows = [compute_frequencies(model, axes, grid_pose, payload, tip_body) for grid_pose in poses]
-    return grid, np.reshape(rows, (*map(len, grid), len(axes)))
+    grid = [list_grid_angles(robot_model, axis) for axis in select_grid_axes(robot_axes)]
+    poses = list_grid_poses(robot_model, robot_axes, robot_pose, grid)
+    rows = [
+        compute_frequencies(robot_model, robot_axes, grid_pose, payload_mass, tip_body) for grid_pose in poses
+    ]
+    return grid, np.reshape(rows, (*map(len, grid), len(robot_axes)))
 
 
-def grid_poses(model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, grid_angles: list[Array]) -> Array:
+def list_grid_poses(
+    robot_model: "MjModel", robot_axes: Sequence[ElasticAxis], robot_pose: Array, grid_angles: list[Array]
+) -> Array:
     """Poses (k, n) of the robot on the grid; the last grid axis varies fastest.
 
-    Joints outside the grid keep their position in `pose`.
+    Joints outside the grid keep their position in `robot_pose`.
     """
-    indices = [int(model.joint(axis.joint).qposadr[0]) for axis in select_grid_axes(axes)]
+    indices = [int(robot_model.joint(axis.joint_name).qposadr[0]) for axis in select_grid_axes(robot_axes)]
     mesh = np.stack(np.meshgrid(*grid_angles, indexing="ij"), axis=-1).reshape(-1, len(grid_angles))
-    poses = np.tile(pose, (len(mesh), 1))
+    poses = np.tile(robot_pose, (len(mesh), 1))
     poses[:, indices] = mesh
     return poses
 
 
 def find_worst_pose(
-    model: "MjModel",
-    axes: Sequence[ElasticAxis],
-    pose: Array,
+    robot_model: "MjModel",
+    robot_axes: Sequence[ElasticAxis],
+    robot_pose: Array,
     grid_angles: list[Array],
-    payload: float,
+    payload_mass: float,
     tip_body: int,
 ) -> Array:
     """Pose of the grid with the largest tip displacement under weight.
 
     Displacements that differ by less than 1 nm count as equal. Of several such
-    poses: the one nearest to `pose`. Joints outside the grid keep `pose`.
+    poses: the one nearest to `robot_pose`. Joints outside the grid keep `robot_pose`.
     """
     poses = sorted(
-        grid_poses(model, axes, pose, grid_angles),
-        key=lambda grid_pose: round(float(np.linalg.norm(grid_pose - pose)), 9),
+        list_grid_poses(robot_model, robot_axes, robot_pose, grid_angles),
+        key=lambda grid_pose: round(float(np.linalg.norm(grid_pose - robot_pose)), 9),
     )
     return max(
         poses,
         key=lambda grid_pose: round(
-            compute_weight_deflection(model, axes, grid_pose, payload, tip_body)[1], 9
+            compute_weight_deflection(robot_model, robot_axes, grid_pose, payload_mass, tip_body)[1], 9
         ),
     )
 
 
-def largest_torques(
-    model: "MjModel",
-    axes: Sequence[ElasticAxis],
-    pose: Array,
+def compute_largest_torques(
+    robot_model: "MjModel",
+    robot_axes: Sequence[ElasticAxis],
+    robot_pose: Array,
     grid_angles: list[Array],
-    payload: float,
+    payload_mass: float,
     tip_body: int,
 ) -> Array:
     """Largest magnitude (n) [N.m] of the weight torque of each axis, over the poses of the grid."""
-    poses = grid_poses(model, axes, pose, grid_angles)
-    torques = [compute_torques(model, axes, grid_pose, payload, tip_body)[0] for grid_pose in poses]
+    poses = list_grid_poses(robot_model, robot_axes, robot_pose, grid_angles)
+    torques = [
+        compute_weight_torques(robot_model, robot_axes, grid_pose, payload_mass, tip_body)[0]
+        for grid_pose in poses
+    ]
     return np.asarray(np.max(np.abs(torques), axis=0))
 
 
-def is_loaded(axis: ElasticAxis, torque: float) -> bool:
+def is_loaded_by_weight(robot_axis: ElasticAxis, weight_torque: float) -> bool:
     """Whether a weight torque [N.m] of an axis is more than rounding."""
-    return abs(torque) > MIN_WEIGHT_OVER_RATED_TORQUE * axis.drive.rated_torque
+    return abs(weight_torque) > MIN_WEIGHT_OVER_RATED_TORQUE * robot_axis.drive.rated_torque
 
 
 def draw_frequencies(
-    path: Path, axes: Sequence[ElasticAxis], grid_angles: list[Array], frequencies: Array
+    picture_path: Path,
+    robot_axes: Sequence[ElasticAxis],
+    grid_angles: list[Array],
+    natural_frequencies: Array,
 ) -> None:
     """Plot the lowest two natural frequencies over the pose grid."""
-    names = [axis.joint for axis in select_grid_axes(axes)]
-    with plots.open_figure(path, FIGURE_SIZE) as figure:
-        for i in range(min(2, frequencies.shape[-1])):
-            panel = figure.add_subplot(1, min(2, frequencies.shape[-1]), i + 1)
+    names = [axis.joint_name for axis in select_grid_axes(robot_axes)]
+    with plots.open_figure(picture_path, FIGURE_SIZE) as figure:
+        for i in range(min(2, natural_frequencies.shape[-1])):
+            panel = figure.add_subplot(1, min(2, natural_frequencies.shape[-1]), i + 1)
             panel.set(title=f"frequency {i + 1} [Hz]", xlabel=f"{names[0]} [deg]")
-            values = frequencies[..., i]
+            values = natural_frequencies[..., i]
             mean = float(np.mean(values))
-            if np.ptp(values) <= CONSTANT_FREQUENCY_RELATIVE_CHANGE * mean:
+            if np.ptp(values) <= MAX_CHANGE_OF_CONSTANT_FREQUENCY * mean:
                 panel.set_title(f"frequency {i + 1}: {mean:.4g} Hz in all poses")
                 values = np.full_like(values, mean)
             if len(grid_angles) == 1:
@@ -136,22 +150,30 @@ def draw_frequencies(
 
 
 def draw_deflection_over_payload(
-    path: Path, model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, payload: float, tip_body: int
+    picture_path: Path,
+    robot_model: "MjModel",
+    robot_axes: Sequence[ElasticAxis],
+    robot_pose: Array,
+    payload_mass: float,
+    tip_body: int,
 ) -> tuple[Array, float]:
     """Plot wind-ups and tip error against payload; returns their values (n) [rad] and [m] at full payload."""
-    loads = np.linspace(0.0, payload, PAYLOAD_POINT_COUNT)
-    rows = [compute_weight_deflection(model, axes, pose, float(load), tip_body) for load in loads]
-    weights = compute_torques(model, axes, pose, payload, tip_body)[0].tolist()
-    with plots.open_figure(path, FIGURE_SIZE) as figure:
+    loads = np.linspace(0.0, payload_mass, PAYLOAD_POINT_COUNT)
+    rows = [
+        compute_weight_deflection(robot_model, robot_axes, robot_pose, float(load), tip_body)
+        for load in loads
+    ]
+    weights = compute_weight_torques(robot_model, robot_axes, robot_pose, payload_mass, tip_body)[0].tolist()
+    with plots.open_figure(picture_path, FIGURE_SIZE) as figure:
         wind_up_axes, error_axes = figure.subplots(1, 2)
-        if not any(map(is_loaded, axes, weights)):
+        if not any(map(is_loaded_by_weight, robot_axes, weights)):
             for axes_of_panel, quantity in ((wind_up_axes, "wind-up"), (error_axes, "tip error")):
                 axes_of_panel.set_axis_off()
                 text = f"no {quantity}: weight and payload\ndo not load the drives in this pose"
                 axes_of_panel.text(0.5, 0.5, text, ha="center", va="center", fontsize=12)
             return rows[-1]
-        for axis, line in zip(axes, np.array([x for x, _ in rows]).T, strict=True):
-            wind_up_axes.plot(loads, 1e3 * line, label=axis.joint)
+        for axis, line in zip(robot_axes, np.array([x for x, _ in rows]).T, strict=True):
+            wind_up_axes.plot(loads, 1e3 * line, label=axis.joint_name)
         wind_up_axes.set(xlabel="payload [kg]", ylabel="wind-up [mrad]")
         wind_up_axes.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0))
         error_axes.plot(loads, [1e3 * error for _, error in rows], color=plots.RED)
@@ -159,12 +181,19 @@ def draw_deflection_over_payload(
     return rows[-1]
 
 
-def draw_ringing(path: Path, axes: Sequence[ElasticAxis], ringing: Sequence[Ringing]) -> None:
+def draw_ringing(
+    picture_path: Path, robot_axes: Sequence[ElasticAxis], ringing_results: Sequence[Ringing]
+) -> None:
     """Plot the distance of the tip from its position at rest, after the stop of each motor."""
-    with plots.open_figure(path, FIGURE_SIZE) as figure:
+    with plots.open_figure(picture_path, FIGURE_SIZE) as figure:
         panel = figure.subplots()
-        for axis, result in zip(axes, ringing, strict=True):
-            panel.plot(result.times, 1e3 * result.distance, label=f"stop of {axis.joint}", linewidth=1.0)
+        for axis, result in zip(robot_axes, ringing_results, strict=True):
+            panel.plot(
+                result.times_after_stop,
+                1e3 * result.tip_distance,
+                label=f"stop of {axis.joint_name}",
+                linewidth=1.0,
+            )
         panel.set(xlabel="time after the stop [s]", ylabel="distance of the tip from rest [mm]")
         panel.set_ylim(0.0, None)
         panel.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0))

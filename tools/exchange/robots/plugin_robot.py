@@ -16,9 +16,9 @@ from .elastic import MOTOR_NAME_SUFFIX, ElasticAxis, add_drives
 from .names import make_identifier
 
 
-def find_two_flange_fmu(file: ParameterFile) -> str:
+def find_two_flange_fmu(drive_file: ParameterFile) -> str:
     """Name of the FMU of a drive that connects two flanges."""
-    models = KINDS[file.joint].models
+    models = KINDS[drive_file.joint].models
     return next(
         model.name
         for model in models
@@ -26,7 +26,7 @@ def find_two_flange_fmu(file: ParameterFile) -> str:
     )
 
 
-def compile_plugins(drive_files: Mapping[str, ParameterFile], out: Path) -> dict[str, Path]:
+def compile_plugins(drive_files: Mapping[str, ParameterFile], output_folder: Path) -> dict[str, Path]:
     """Compile the plugin `jointfmu.NAME` of each drive into a folder; returns {name of the drive: file}.
 
     drive_files : {joint: parameter file of its drive}
@@ -38,31 +38,31 @@ def compile_plugins(drive_files: Mapping[str, ParameterFile], out: Path) -> dict
         for file in drive_files.values():
             name = make_identifier(file.name)
             if name not in paths:
-                (fmu,) = build_fmus([find_two_flange_fmu(file)], ["fmi3"], file, Path(folder), alias=name)
-                paths[name] = plugin(fmu, out)
+                (fmu,) = build_fmus([find_two_flange_fmu(file)], ["fmi3"], file, Path(folder), fmu_alias=name)
+                paths[name] = plugin(fmu, output_folder)
     return paths
 
 
 def format_robot_with_plugins(
-    robot_spec: Any, axes: Sequence[ElasticAxis], drive_files: Mapping[str, ParameterFile]
+    robot_spec: Any, robot_axes: Sequence[ElasticAxis], drive_files: Mapping[str, ParameterFile]
 ) -> str:
     """Format the MJCF of a robot with plugins as drives; the folders of meshes are those of the robot.
 
-    axes        : axes with a drive
+    robot_axes  : axes with a drive
     drive_files : {joint: parameter file of its drive}
     """
-    model_spec = add_drives(robot_spec, list(axes), has_springs=False)
+    model_spec = add_drives(robot_spec, list(robot_axes), has_springs=False)
     model_spec.compile()
     root = ElementTree.fromstring(model_spec.to_xml())
     extension = ElementTree.Element("extension")
     root.insert(0, extension)
-    for axis in axes:
-        name = f"jointfmu.{make_identifier(drive_files[axis.joint].name)}"
+    for axis in robot_axes:
+        name = f"jointfmu.{make_identifier(drive_files[axis.joint_name].name)}"
         node = extension.find(f"plugin[@plugin='{name}']")
         if node is None:
             node = ElementTree.SubElement(extension, "plugin", plugin=name)
-        drive = ElementTree.SubElement(node, "instance", name=f"{axis.joint}_drive")
-        ElementTree.SubElement(drive, "config", key="phi1", value=axis.joint + MOTOR_NAME_SUFFIX)
-        ElementTree.SubElement(drive, "config", key="phi2", value=axis.joint)
+        drive = ElementTree.SubElement(node, "instance", name=f"{axis.joint_name}_drive")
+        ElementTree.SubElement(drive, "config", key="phi1", value=axis.joint_name + MOTOR_NAME_SUFFIX)
+        ElementTree.SubElement(drive, "config", key="phi2", value=axis.joint_name)
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="unicode") + "\n"

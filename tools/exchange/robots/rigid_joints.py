@@ -42,7 +42,7 @@ class JointFriction:
     viscous_friction: float
 
     @classmethod
-    def for_drive(cls, drive: Transmission) -> "JointFriction":
+    def from_drive(cls, drive: Transmission) -> "JointFriction":
         """Friction of the motor of a drive, seen from the output of the drive."""
         ratio = abs(drive.ratio)
         return cls(
@@ -50,11 +50,11 @@ class JointFriction:
         )
 
 
-def rigid_drive_values(axis: "ElasticAxis") -> dict[str, float]:
-    """Numbers that describe a robot's joint with a rigid drive: {name in RIGID_DRIVE_VALUE_UNITS: value}."""
-    friction = JointFriction.for_drive(axis.drive)
+def rigid_drive_values(robot_axis: "ElasticAxis") -> dict[str, float]:
+    """Armature and friction of a joint with a rigid drive: {name in RIGID_DRIVE_VALUE_UNITS: value}."""
+    friction = JointFriction.from_drive(robot_axis.drive)
     return {
-        "armature": axis.rotor_inertia,
+        "armature": robot_axis.rotor_inertia,
         "static_friction": friction.static_friction,
         "dynamic_friction": friction.dynamic_friction,
         "viscous_friction": friction.viscous_friction,
@@ -69,16 +69,16 @@ def format_rigid_drive_values(drive_values: Mapping[str, float]) -> str:
     )
 
 
-def format_actuators(axes: "Sequence[ElasticAxis]") -> str:
+def format_actuators(robot_axes: "Sequence[ElasticAxis]") -> str:
     """JSON text with `actuators`: {joint: arguments of Isaac Lab's ImplicitActuatorCfg}.
 
     In Isaac Lab, `friction` is the static friction. Since Isaac Sim 5.0, friction is a torque [N.m].
     """
     groups = {}
-    for axis in axes:
+    for axis in robot_axes:
         figures = rigid_drive_values(axis)
-        groups[axis.joint] = {
-            "joint_names_expr": [axis.joint],
+        groups[axis.joint_name] = {
+            "joint_names_expr": [axis.joint_name],
             "armature": figures["armature"],
             "friction": figures["static_friction"],
             "dynamic_friction": figures["dynamic_friction"],
@@ -88,14 +88,14 @@ def format_actuators(axes: "Sequence[ElasticAxis]") -> str:
     return json.dumps({"about": about, "actuators": groups}, indent=2) + "\n"
 
 
-def add_rigid_drives(robot_spec: Any, axes: "Sequence[ElasticAxis]") -> Any:
+def add_rigid_drives(robot_spec: Any, robot_axes: "Sequence[ElasticAxis]") -> Any:
     """Copy the robot, with armature and friction of the drives in its joints.
 
     Friction and damping of the robot file are added. `frictionloss` of MJCF is the dynamic friction.
     """
     rigid_spec = robot_spec.copy()
-    for axis in axes:
-        figures, joint = rigid_drive_values(axis), rigid_spec.joint(axis.joint)
+    for axis in robot_axes:
+        figures, joint = rigid_drive_values(axis), rigid_spec.joint(axis.joint_name)
         joint.armature = figures["armature"]
         joint.frictionloss = float(joint.frictionloss) + figures["dynamic_friction"]
         damping = list(joint.damping)
@@ -105,7 +105,7 @@ def add_rigid_drives(robot_spec: Any, axes: "Sequence[ElasticAxis]") -> Any:
 
 def describe_drive(drive: Transmission) -> Iterator[str]:
     """Lines with the values of a joint with this drive, for a motor whose inertia is not known."""
-    friction = JointFriction.for_drive(drive)
+    friction = JointFriction.from_drive(drive)
     figures = {name: getattr(friction, name) for name in RIGID_DRIVE_VALUE_UNITS if name != "armature"}
     yield f"as a rigid joint: {format_rigid_drive_values(figures)}"
     yield f"  armature: {drive.ratio**2:g} times the inertia of the rotor and the wave generator"

@@ -8,7 +8,7 @@ from scipy.optimize import brentq, nnls
 from jointfmu.mechanics.jenkins import Sliders
 from jointfmu.quantity import Array
 
-from .transmission import LOOP_POINTS, RAMP_POINTS, Transmission, loop_area
+from .transmission import LOOP_POINT_COUNT, RAMP_POINT_COUNT, Transmission, loop_area
 
 YIELD_OVER_MAX_WIND_UPS = np.geomspace(0.02, 0.4, 6)
 """Candidate yield wind-ups of the springs over the largest wind-up of the fit [1].
@@ -25,8 +25,8 @@ Round-off of the drive's inversion leaves about this area."""
 class FittedSpring:
     """Torque [N.m] against wind-up x [rad] from rest: k x + k3 x^3, and yielding springs in parallel.
 
-    linear_stiffness : coefficient [N.m/rad], not negative, so that the torque increases with wind-up
-    cubic_stiffness  : coefficient [N.m/rad^3], not negative
+    linear_stiffness : k [N.m/rad], not negative, so that the torque increases with wind-up
+    cubic_stiffness  : k3 [N.m/rad^3], not negative
     yielding_springs : (stiffness [N.m/rad], yield wind-up [rad]) of each yielding spring
     max_torque       : largest torque [N.m] of the fit
     """
@@ -52,7 +52,7 @@ class FittedSpring:
         size = brentq(lambda x: self.compute_torque(np.array([x]))[0] - abs(torque), 0.0, upper, xtol=1e-15)
         return float(np.copysign(size, torque))
 
-    def stiffness(self, torque: float) -> float:
+    def stiffness_at_torque(self, torque: float) -> float:
         """Stiffness [N.m/rad] of small vibrations about a torque [N.m], with all sliders sticking."""
         x = self.solve_wind_up(torque)
         return (
@@ -63,7 +63,7 @@ class FittedSpring:
 
 
 def compute_unit_slider_torque(wind_up: Array, yield_wind_up: float) -> Array:
-    """Force (n) of a yielding spring of stiffness 1 along a history of wind-ups (n) that starts at rest."""
+    """Torque (n) of a yielding spring of stiffness 1 N.m/rad along wind-ups (n) [rad] that start at rest."""
     return Sliders(np.ones(1)).follow_increments(np.diff(wind_up, prepend=0.0), np.array([yield_wind_up]))
 
 
@@ -91,8 +91,8 @@ def fit_spring(drive: Transmission, max_torque: float) -> FittedSpring:
 
 def loop_half_width(wind_up: Array, torque: Array) -> Array:
     """Half the distance (n) between the branches of a loop, at n wind-ups between its ends."""
-    back = slice(RAMP_POINTS, RAMP_POINTS + LOOP_POINTS // 2 + 1)
-    forth = slice(RAMP_POINTS + LOOP_POINTS // 2, None)
-    x = np.linspace(wind_up[back].min(), wind_up[back].max(), RAMP_POINTS)
+    back = slice(RAMP_POINT_COUNT, RAMP_POINT_COUNT + LOOP_POINT_COUNT // 2 + 1)
+    forth = slice(RAMP_POINT_COUNT + LOOP_POINT_COUNT // 2, None)
+    x = np.linspace(wind_up[back].min(), wind_up[back].max(), RAMP_POINT_COUNT)
     down = np.interp(x, wind_up[back][::-1], torque[back][::-1])
     return np.asarray(0.5 * (down - np.interp(x, wind_up[forth], torque[forth])))

@@ -8,19 +8,19 @@ from numpy.typing import ArrayLike
 
 from jointfmu.quantity import Array
 
-RAMP_POINTS = 200
+RAMP_POINT_COUNT = 200
 """Number of points of the ramp to the largest torque [1]."""
-LOOP_POINTS = 800
+LOOP_POINT_COUNT = 800
 """Number of points of the hysteresis loop after the ramp [1]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Transmission:
-    """Drive between a motor and a link of a robot, as its models need it.
+    """Drive between a motor and a link of a robot: numbers and wind-up that models of the robot need.
 
-    name             : name of the parameter file
+    drive_name       : name of the parameter file
     ratio            : motor speed over link speed [1], negative for opposite directions
-    damping          : viscous damping at the output [N.m.s/rad]
+    output_damping   : viscous damping at the output [N.m.s/rad]
     rated_torque     : rated torque at the output [N.m]
     max_torque       : largest tabulated torque at the output [N.m]
     dry_friction     : Coulomb friction of the motor [N.m]
@@ -32,9 +32,9 @@ class Transmission:
     omitted_effects  : texts on effects of the drive other than springs, sliders and friction
     """
 
-    name: str
+    drive_name: str
     ratio: float
-    damping: float
+    output_damping: float
     rated_torque: float
     max_torque: float
     dry_friction: float
@@ -45,14 +45,14 @@ class Transmission:
     compute_wind_up: Callable[[ArrayLike], Array]
     omitted_effects: Sequence[str] = ()
 
-    def compute_loop(self, torque: float) -> tuple[Array, Array]:
-        """Torques (n) [N.m] and wind-ups (n) [rad] along a ramp from rest to `torque` and one full loop."""
-        ramp = np.linspace(0.0, torque, RAMP_POINTS + 1)
-        cycle = np.cos(np.linspace(0.0, 2.0 * np.pi, LOOP_POINTS + 1)[1:]) * torque
+    def compute_loop(self, loop_torque: float) -> tuple[Array, Array]:
+        """Torques (n) [N.m] and wind-ups (n) [rad] along a ramp from rest to `loop_torque` and one loop."""
+        ramp = np.linspace(0.0, loop_torque, RAMP_POINT_COUNT + 1)
+        cycle = np.cos(np.linspace(0.0, 2.0 * np.pi, LOOP_POINT_COUNT + 1)[1:]) * loop_torque
         torques = np.concatenate([ramp, cycle])
         return torques, self.compute_wind_up(torques)
 
 
-def loop_area(wind_up: Array, torque: Array) -> float:
+def loop_area(wind_up: Array, loop_torque: Array) -> float:
     """Area [J] of the loop after the ramp: the energy dissipated in one cycle."""
-    return float(np.trapezoid(torque[RAMP_POINTS:], wind_up[RAMP_POINTS:]))
+    return float(np.trapezoid(loop_torque[RAMP_POINT_COUNT:], wind_up[RAMP_POINT_COUNT:]))

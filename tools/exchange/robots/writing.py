@@ -8,24 +8,24 @@ from .transmission import Transmission
 
 
 def format_drive(
-    robot_format: str, drive: Transmission, torque: float | None
+    robot_format: str, drive: Transmission, requested_torque: float | None
 ) -> tuple[str, list[str], dict[str, object]]:
     """Format a drive for a robot format (MJCF, URDF); springs are fitted up to a torque.
 
-    robot_format : a key of FORMAT_WRITERS
-    torque       : [N.m]; None: rated torque
+    robot_format     : a key of FORMAT_WRITERS
+    requested_torque : [N.m]; None: rated torque
 
     Returns the text of the file, lines on fit errors and omitted effects, and both as a JSON object (SI).
 
     Raises ValueError if the torque is outside the drive's table, ImportError without mujoco.
     """
-    fit_torque = drive.rated_torque if torque is None else torque
+    fit_torque = drive.rated_torque if requested_torque is None else requested_torque
     if not 0.0 < fit_torque <= drive.max_torque:
         raise ValueError(
-            f"--torque = {fit_torque:g} N.m is outside (0, {drive.max_torque:g}] N.m of {drive.name}"
+            f"--torque = {fit_torque:g} N.m is outside (0, {drive.max_torque:g}] N.m of {drive.drive_name}"
         )
     text, miss, lacks = FORMAT_WRITERS[robot_format](drive, fit_torque)
-    figures = asdict(JointFriction.for_drive(drive))
+    figures = asdict(JointFriction.from_drive(drive))
     lines = [
         *describe_drive(drive),
         *(miss.format_lines(fit_torque) if miss else ()),
@@ -36,7 +36,7 @@ def format_drive(
         text,
         lines,
         {
-            "drive": drive.name,
+            "drive": drive.drive_name,
             "torque": fit_torque,
             **errors,
             "rigid_joint": figures,

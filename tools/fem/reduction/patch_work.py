@@ -27,16 +27,16 @@ REGULARISATION_WEIGHT = 0.1
 """Weight of the change of the patch displacements (regularisation) over the weight of the forces [1]."""
 MAX_FIT_STEPS = 10
 """Largest number of steps of the Levenberg-Marquardt method."""
-INITIAL_DAMPING, DAMPING_DECREASE, DAMPING_INCREASE, MAX_DAMPING = 1e-3, 0.2, 5.0, 1e6
+INITIAL_FIT_DAMPING, FIT_DAMPING_DECREASE, FIT_DAMPING_INCREASE, MAX_FIT_DAMPING = 1e-3, 0.2, 5.0, 1e6
 """Levenberg-Marquardt damping over the diagonal of the normal equations [1]: initial value, factor after a
 successful step, factor after a failed step, largest value."""
-STIFFNESS_WEIGHT = 300.0
+STICK_STIFFNESS_ERROR_WEIGHT = 300.0
 """Weight of the error of the stick stiffness, relative to the joint stiffness, over the weight of forces and
 losses [1]. The stiffness error stays below 2e-4. A larger weight makes the valley of the objective too narrow
 for the steps."""
-MIN_DISPLACEMENT = 1e-15
+MIN_TANGENTIAL_DISPLACEMENT = 1e-15
 """Smallest tangential displacement in divisions [m]."""
-MIN_LOSS_OVER_WORK = 0.01
+MIN_CYCLE_LOSS_OVER_STICK_WORK = 0.01
 """Loss per cycle over the work of the stick forces [1]: lower limit for scales of losses. Rough surfaces lose
 more at the smallest motion; an interface of constant stiffness loses nothing below its friction limit."""
 MIN_OVER_MAX_MEAN_SQUARE_DISTANCE = 1e-12
@@ -65,17 +65,17 @@ def shear_combinations(state_motions: Array) -> Array:
 class ShearStates:
     """s states of the joint in shear: motion of side 2, and coordinates of the k modes of the bodies.
 
-    motion            : (s, 3) [m, rad] of side 2 along x, along y and about z
+    rigid_motion      : (s, 3) [m, rad] of side 2 along x, along y and about z
     modal_coordinates : (s, k) [m]
     """
 
-    motion: Array
+    rigid_motion: Array
     modal_coordinates: Array
 
     @property
-    def coordinates(self) -> Array:
+    def generalised_coordinates(self) -> Array:
         """Motions and modal coordinates (s, 3 + k) [m, rad]."""
-        return np.concatenate([self.motion, self.modal_coordinates], axis=1)
+        return np.concatenate([self.rigid_motion, self.modal_coordinates], axis=1)
 
 
 @dataclass(frozen=True)
@@ -83,23 +83,23 @@ class FrictionPoints:
     """Points (n) with friction: quadrature points of the contact, or sliders of the patches.
 
     point_area         : (n) [m2]
-    approach           : (n) [m] in the preloaded joint
+    preloaded_approach : (n) [m] in the preloaded joint
     rigid_displacement : (2 n, 3) displacement along x (n), then along y (n), by rigid-body motions along x,
                          along y and about z
     """
 
     point_area: Array
-    approach: Array
+    preloaded_approach: Array
     rigid_displacement: Array
 
 
 @dataclass(frozen=True)
 class FrictionWork:
-    """Friction forces and loss in s states in shear.
+    """Generalised friction forces, and energy loss per cycle, of a joint in s states in shear.
 
     friction_forces : generalised friction forces (s, 3 + k) [N, N.m] on three motions and k modes
     stick_forces    : generalised friction forces (s, 3 + k) [N, N.m] if no point slipped
-    cycle_loss      : (s) [J] energy loss per cycle with this amplitude
+    cycle_loss      : (s) [J] energy loss per cycle with the displacement of the state as amplitude
     """
 
     friction_forces: Array
@@ -107,29 +107,32 @@ class FrictionWork:
     cycle_loss: Array
 
 
-def _force_scale(forces: Array) -> Array:
-    """Divisors (s, 3 + k) of errors of generalised forces.
+def _generalised_force_scales(generalised_forces: Array) -> Array:
+    """Divisors (s, 3 + k) for errors of generalised forces on 3 motions and k modes, in s states.
 
-    Each state has one divisor for x and y, one for the moment, and one for the modes.
+    Each state has one divisor for the motions along x and y, one for the rotation, and one for the modes.
     """
-    force, moment, modes = (np.linalg.norm(f, axis=1) for f in (forces[:, :2], forces[:, 2:3], forces[:, 3:]))
+    force, moment, modes = (
+        np.linalg.norm(f, axis=1)
+        for f in (generalised_forces[:, :2], generalised_forces[:, 2:3], generalised_forces[:, 3:])
+    )
     lever_arm = np.max(moment) / np.max(force)
     force = np.hypot(force, moment / lever_arm)
     modes = np.maximum(modes, MIN_RELATIVE_DISPLACEMENT_SCALE * np.max(modes / force) * force)
-    return np.stack([force, force, lever_arm * force, *[modes] * (forces.shape[1] - 3)], axis=1)
+    return np.stack([force, force, lever_arm * force, *[modes] * (generalised_forces.shape[1] - 3)], axis=1)
 
 
 @dataclass(frozen=True)
 class MonotonicFriction:
-    """Friction law in monotonic loading at s states and n points; all arrays (s, n).
+    """Friction law in monotonic loading, evaluated in s states of the joint at n points; all arrays (s, n).
 
     displacement_x, displacement_y : tangential displacement along x and y [m]
-    displacement_magnitude : magnitude of the tangential displacement [m]
-    secant_stiffness : traction over displacement [Pa/m]
-    tangent_stiffness : derivative of the traction [Pa/m]
-    stick_stiffness : stiffness without slip [Pa/m]
-    cycle_loss : energy loss per cycle with this amplitude [J/m2]
-    cycle_loss_derivative : derivative of cycle_loss with respect to the magnitude [Pa]
+    displacement_magnitude         : magnitude of the tangential displacement [m]
+    secant_stiffness               : traction over displacement [Pa/m]
+    tangent_stiffness              : derivative of the traction [Pa/m]
+    stick_stiffness                : stiffness without slip [Pa/m]
+    cycle_loss                     : energy loss per cycle whose amplitude is displacement_magnitude [J/m2]
+    cycle_loss_derivative          : derivative of cycle_loss with respect to the magnitude [Pa]
     """
 
     displacement_x: Array
@@ -142,22 +145,31 @@ class MonotonicFriction:
     cycle_loss_derivative: Array
 
     @classmethod
-    def evaluate(cls, friction_law: Foundation, approach: Array, displacement: Array) -> "MonotonicFriction":
-        """Friction at approaches (n) [m] and tangential displacements (s, 2 n) [m]: along x, then along y."""
-        u, v = np.split(displacement, 2, axis=1)
-        size = np.maximum(np.hypot(u, v), MIN_DISPLACEMENT)
+    def evaluate_law(
+        cls, friction_law: Foundation, point_approach: Array, tangential_displacement: Array
+    ) -> "MonotonicFriction":
+        """Friction of n points at approaches [m] and displacements (s, 2 n) [m] along x, then y."""
+        u, v = np.split(tangential_displacement, 2, axis=1)
+        size = np.maximum(np.hypot(u, v), MIN_TANGENTIAL_DISPLACEMENT)
         stick, tangent = (
             friction_law.stiffness_ratio * friction_law.pressure_curve.derivatives(x, 1)[1]
             for x in (
-                approach,
-                approach - friction_law.stiffness_ratio / friction_law.friction_coefficient * size,
+                point_approach,
+                point_approach - friction_law.stiffness_ratio / friction_law.friction_coefficient * size,
             )
         )
         stick = np.broadcast_to(stick, size.shape)
-        force = np.minimum(friction_law.virgin_traction(approach, size), stick * size)
+        force = np.minimum(friction_law.virgin_traction(point_approach, size), stick * size)
         rate = 4.0 * (force - tangent * size)
         return cls(
-            u, v, size, force / size, tangent, stick, friction_law.cycle_energies(approach, size)[0], rate
+            u,
+            v,
+            size,
+            force / size,
+            tangent,
+            stick,
+            friction_law.cycle_energies(point_approach, size)[0],
+            rate,
         )
 
 
@@ -182,33 +194,34 @@ class StickContactStiffness:
 
 @dataclass(frozen=True)
 class PatchFit:
-    """Least-squares problem: fit the friction of m patches to the friction at all quadrature points.
+    """Least-squares problem: the friction of m patches shall equal that at all quadrature points.
 
     friction_law            : friction law of the interface
     shear_states            : states in shear in which the friction is compared
-    sliders                 : c sliders of each patch: the first of all patches, then the second of all
+    patch_sliders           : c sliders of each patch: the first of all patches, then the second of all
                               patches, ...
-    rotation_displacement   : (2 c m, k) [1] displacement of the sliders by the modal rotation of the patches
-    target_work             : friction at all quadrature points
+    rotation_displacement   : (2 c m, k) [1] displacement of the sliders along x, then y, by the rotation of
+                              the patches in k modes
+    target_friction_work    : friction at all quadrature points
     stick_contact_stiffness : stick stiffness of the complete contact, which the patches keep
     """
 
     friction_law: Foundation
     shear_states: ShearStates
-    sliders: FrictionPoints
+    patch_sliders: FrictionPoints
     rotation_displacement: Array
-    target_work: FrictionWork
+    target_friction_work: FrictionWork
     stick_contact_stiffness: StickContactStiffness
 
     @cached_property
     def residual_scales(self) -> tuple[Array, Array, Array]:
         """Divisors of the errors of forces, stick forces (s, 3 + k) and losses (s), for equal weights."""
-        target = self.target_work
-        work = np.sum(self.shear_states.coordinates * target.stick_forces, axis=1)
+        target = self.target_friction_work
+        work = np.sum(self.shear_states.generalised_coordinates * target.stick_forces, axis=1)
         return (
-            _force_scale(target.friction_forces),
-            _force_scale(target.stick_forces),
-            np.maximum(target.cycle_loss, MIN_LOSS_OVER_WORK * work),
+            _generalised_force_scales(target.friction_forces),
+            _generalised_force_scales(target.stick_forces),
+            np.maximum(target.cycle_loss, MIN_CYCLE_LOSS_OVER_STICK_WORK * work),
         )
 
     def evaluate_sliders(
@@ -226,10 +239,10 @@ class PatchFit:
             np.concatenate([np.tile(half, (count, 1)) for half in np.split(patch_displacement, 2)])
             + self.rotation_displacement
         )
-        return evaluate_friction(self.friction_law, shear_states, self.sliders, by_modes)
+        return evaluate_friction(self.friction_law, shear_states, self.patch_sliders, by_modes)
 
-    def fit(self, patch_displacement: Array) -> Array:
-        """Fit the patch displacements (2 m, k) by the Levenberg-Marquardt method, from given initial values.
+    def fit_patches(self, patch_displacement: Array) -> Array:
+        """Fit the displacements (2 m, k) of m patches by k modes, from initial values (Levenberg-Marquardt).
 
         The preloaded joint keeps the stiffness of its finite elements: in the equilibrium of the linear
         joint, the contact stores the same energy. There, forces on modes have only an effect of second order.
@@ -237,12 +250,12 @@ class PatchFit:
         typical = np.sqrt(np.mean(patch_displacement**2, axis=0))
         weight = (
             REGULARISATION_WEIGHT
-            * np.sqrt(len(self.target_work.cycle_loss) / patch_displacement.size)
+            * np.sqrt(len(self.target_friction_work.cycle_loss) / patch_displacement.size)
             / np.maximum(typical, MIN_RELATIVE_DISPLACEMENT_SCALE * typical.max())
         )
         weight = np.broadcast_to(weight, patch_displacement.shape)
         initial = patch_displacement
-        damping = INITIAL_DAMPING
+        damping = INITIAL_FIT_DAMPING
         errors, work = self._work_errors(patch_displacement)
         stiffness_errors, unit_friction = self._stiffness_errors(patch_displacement)
         for _ in range(MAX_FIT_STEPS):
@@ -255,7 +268,7 @@ class PatchFit:
             )
             objective = errors @ errors + changes @ changes + stiffness_errors @ stiffness_errors
             stiff_hessian = hessian + stiffness_jacobian.T @ stiffness_jacobian
-            while damping < MAX_DAMPING:
+            while damping < MAX_FIT_DAMPING:
                 damped = stiff_hessian + damping * np.diag(np.diag(hessian))
                 factor = cho_factor(damped, overwrite_a=True, check_finite=False)
                 step = cho_solve(factor, -gradient, check_finite=False)
@@ -265,11 +278,11 @@ class PatchFit:
                 changes = (weight * (trial - initial)).ravel()
                 if errors @ errors + changes @ changes + stiffness_errors @ stiffness_errors < objective:
                     break
-                damping *= DAMPING_INCREASE
+                damping *= FIT_DAMPING_INCREASE
             else:
                 return patch_displacement
             patch_displacement = trial
-            damping = DAMPING_DECREASE * damping
+            damping = FIT_DAMPING_DECREASE * damping
         return patch_displacement
 
     def _stiffness_errors(self, patch_displacement: Array) -> tuple[Array, MonotonicFriction]:
@@ -281,20 +294,20 @@ class PatchFit:
             self.stick_contact_stiffness.unit_motion_states, patch_displacement
         )
         error = (
-            stick_stiffness_matrix(friction, self.sliders.point_area)
+            stick_stiffness_matrix(friction, self.patch_sliders.point_area)
             - self.stick_contact_stiffness.contact_stiffness
         ) / self.stick_contact_stiffness.stiffness_scale
-        return np.asarray(STIFFNESS_WEIGHT * error[np.triu_indices(len(error))]), friction
+        return np.asarray(STICK_STIFFNESS_ERROR_WEIGHT * error[np.triu_indices(len(error))]), friction
 
-    def _stiffness_jacobian(self, patch_displacement: Array, friction: MonotonicFriction) -> Array:
-        """Derivative of the stiffness errors with respect to the patch displacements.
+    def _stiffness_jacobian(self, patch_displacement: Array, slider_friction: MonotonicFriction) -> Array:
+        """Derivative of the errors of the stick stiffness with respect to the patch displacements.
 
-        friction : friction forces of the sliders for unit motions of the joint in full stick
+        slider_friction : friction forces of the sliders for unit motions of the joint in full stick
         """
         force = (
-            self.sliders.point_area
-            * friction.stick_stiffness
-            * np.stack([friction.displacement_x, friction.displacement_y])
+            self.patch_sliders.point_area
+            * slider_friction.stick_stiffness
+            * np.stack([slider_friction.displacement_x, slider_friction.displacement_y])
         ).swapaxes(0, 1)
         force = (
             force.reshape(len(force), 2, -1, len(patch_displacement) // 2).sum(axis=2).reshape(len(force), -1)
@@ -304,7 +317,8 @@ class PatchFit:
         )
         slope = (half + half.swapaxes(0, 1)) / self.stick_contact_stiffness.stiffness_scale[:, :, None, None]
         return np.asarray(
-            STIFFNESS_WEIGHT * slope[np.triu_indices(len(slope))].reshape(-1, patch_displacement.size)
+            STICK_STIFFNESS_ERROR_WEIGHT
+            * slope[np.triu_indices(len(slope))].reshape(-1, patch_displacement.size)
         )
 
     def _work_errors(self, patch_displacement: Array) -> tuple[Array, tuple[Array, MonotonicFriction]]:
@@ -316,8 +330,8 @@ class PatchFit:
         Returns the errors, and the displacement and friction of the sliders.
         """
         displacement, friction = self.evaluate_sliders(self.shear_states, patch_displacement)
-        actual = assemble_friction_work(friction, self.sliders.point_area, displacement)
-        target = self.target_work
+        actual = assemble_friction_work(friction, self.patch_sliders.point_area, displacement)
+        target = self.target_friction_work
         pairs = (
             (actual.friction_forces, target.friction_forces),
             (actual.stick_forces, target.stick_forces),
@@ -327,17 +341,21 @@ class PatchFit:
         return np.concatenate(errors), (displacement, friction)
 
     def _work_jacobian(
-        self, patch_displacement: Array, displacement: Array, friction: MonotonicFriction
+        self, patch_displacement: Array, displacement: Array, slider_friction: MonotonicFriction
     ) -> Array:
-        """Derivative of `_work_errors` (friction forces and losses) with respect to the patch displacements.
+        """Derivative of the errors of friction forces and losses with respect to the patch displacements.
 
-        displacement, friction : displacement (2 c m, 3 + k) and friction of the sliders
+        displacement, slider_friction : displacement (2 c m, 3 + k) and friction of the sliders
         """
-        area, amplitude = self.sliders.point_area, self.shear_states.modal_coordinates
+        area, amplitude = self.patch_sliders.point_area, self.shear_states.modal_coordinates
         (n_states, modes), count = amplitude.shape, len(patch_displacement) // 2
-        u, v, size = friction.displacement_x, friction.displacement_y, friction.displacement_magnitude
+        u, v, size = (
+            slider_friction.displacement_x,
+            slider_friction.displacement_y,
+            slider_friction.displacement_magnitude,
+        )
         direction, halves = (u / size, v / size), np.split(displacement, 2)
-        secant, tangent = friction.secant_stiffness, friction.tangent_stiffness
+        secant, tangent = slider_friction.secant_stiffness, slider_friction.tangent_stiffness
 
         def sum_products_over_sliders(slider_stiffness: Array, slider_displacement: Array) -> Array:
             """Slider stiffness (s states) times displacement (3 + k motions and modes), summed in each patch.
@@ -355,14 +373,14 @@ class PatchFit:
             return slider_values.reshape(n_states, -1, count).sum(axis=1)
 
         forces, loss = np.zeros((2, n_states, 3 + modes, 2, count)), np.zeros((n_states, 2, count))
-        patch_forces, springs = np.zeros((2, n_states, 2, count)), area * friction.stick_stiffness
+        patch_forces, springs = np.zeros((2, n_states, 2, count)), area * slider_friction.stick_stiffness
         for i, shift in enumerate((u, v)):
             for j in range(2):
                 slope = area * ((i == j) * secant + (tangent - secant) * direction[i] * direction[j])
                 forces[0, :, :, i] += sum_products_over_sliders(slope, halves[j])
             forces[1, :, :, i] = sum_products_over_sliders(springs, halves[i])
             patch_forces[:, :, i] = sum_over_sliders(area * secant * shift), sum_over_sliders(springs * shift)
-            loss[:, i] = sum_over_sliders(area * friction.cycle_loss_derivative * direction[i])
+            loss[:, i] = sum_over_sliders(area * slider_friction.cycle_loss_derivative * direction[i])
         force_derivative, mode = forces[..., None] * amplitude[:, None, None, None], np.arange(modes)
         force_derivative[:, :, 3 + mode, :, :, mode] += patch_forces
         derivatives = *force_derivative, loss[..., None] * amplitude[:, None, None]
@@ -372,19 +390,19 @@ class PatchFit:
         )
 
 
-def rigid_displacement_matrix(position: Array) -> Array:
+def rigid_displacement_matrix(point_position: Array) -> Array:
     """Displacement (2 n, 3) of positions (n, 2) [m] by unit motions along x, along y and about z.
 
     The first n rows are the displacement along x, the others along y.
     """
-    x, y = position.T
+    x, y = point_position.T
     unit, zero = np.ones_like(x), np.zeros_like(x)
     return np.concatenate([np.stack([unit, zero, -y], axis=1), np.stack([zero, unit, x], axis=1)])
 
 
 def patch_rotations(
     quadrature_position: Array,
-    patches: FrictionPatches,
+    friction_patches: FrictionPatches,
     averaging_matrix: sp.csr_matrix,
     tangential_displacements: list[Array],
 ) -> Array:
@@ -393,11 +411,11 @@ def patch_rotations(
     The rotation is a mean over the cell of each patch, weighted by the averaging matrix and the squared
     distance from the centre.
 
-    quadrature_position : (q, 2) [m] of the quadrature points
-    averaging_matrix : averaging matrix (m, q) [1]
+    quadrature_position      : (q, 2) [m] of the quadrature points
+    averaging_matrix         : averaging matrix (m, q) [1]
     tangential_displacements : displacement (q, k) [1] of the quadrature points along x and y by the modes
     """
-    cell = cKDTree(patches.position).query(quadrature_position)[1]
+    cell = cKDTree(friction_patches.position).query(quadrature_position)[1]
     x, y = (quadrature_position - (averaging_matrix @ quadrature_position)[cell]).T
     lever = x[:, None] * tangential_displacements[1] - y[:, None] * tangential_displacements[0]
     square = averaging_matrix @ (x * x + y * y)
@@ -409,9 +427,9 @@ def patch_rotations(
 
 
 def place_sliders(
-    patches: FrictionPatches, contact_area: float, patch_approach: Array, modal_rotations: Array
+    friction_patches: FrictionPatches, contact_area: float, patch_approach: Array, modal_rotations: Array
 ) -> tuple[FrictionPoints, Array]:
-    """Sliders of the patches: c = 1 at the centre, or c on a circle around it if patches have a radius.
+    """Place c sliders on each of m patches: one at the centre, or c on a circle if patches have a radius.
 
     contact_area    : nominal contact area [m2]
     patch_approach  : (m) [m] of the patches in the preloaded joint
@@ -419,14 +437,18 @@ def place_sliders(
 
     Returns the sliders (c m), and their displacement (2 c m, k) [1] by the rotation of the patches.
     """
-    circle = SLIDER_CIRCLE_POINTS if np.any(patches.radius) else 0.0 * SLIDER_CIRCLE_POINTS[:1]
-    offset = circle[:, None] * patches.radius[:, None]
+    circle = (
+        SLIDER_CIRCLE_POINTS
+        if np.any(friction_patches.slider_circle_radius)
+        else 0.0 * SLIDER_CIRCLE_POINTS[:1]
+    )
+    offset = circle[:, None] * friction_patches.slider_circle_radius[:, None]
     count, (x, y) = len(circle), offset.reshape(-1, 2).T[:, :, None]
     slider_rotations = np.tile(modal_rotations, (count, 1))
     sliders = FrictionPoints(
-        np.tile(contact_area * patches.area_share / count, count),
+        np.tile(contact_area * friction_patches.area_share / count, count),
         np.tile(patch_approach, count),
-        rigid_displacement_matrix((patches.position + offset).reshape(-1, 2)),
+        rigid_displacement_matrix((friction_patches.position + offset).reshape(-1, 2)),
     )
     return sliders, np.concatenate([-y * slider_rotations, x * slider_rotations])
 
@@ -444,18 +466,20 @@ def evaluate_friction(
     Returns the displacement (2 n, 3 + k) of the points by 3 motions and k modes, and their friction.
     """
     displacement = np.concatenate([friction_points.rigid_displacement, modal_displacement], axis=1)
-    return displacement, MonotonicFriction.evaluate(
-        friction_law, friction_points.approach, shear_states.coordinates @ displacement.T
+    return displacement, MonotonicFriction.evaluate_law(
+        friction_law,
+        friction_points.preloaded_approach,
+        shear_states.generalised_coordinates @ displacement.T,
     )
 
 
 def assemble_friction_work(
-    monotonic_friction: MonotonicFriction, point_area: Array, displacement: Array
+    monotonic_friction: MonotonicFriction, point_area: Array, point_displacement: Array
 ) -> FrictionWork:
     """Generalised friction forces and energy loss of n points in contact.
 
-    point_area   : (n) [m2]
-    displacement : (2 n, 3 + k) of the points by motions and modes
+    point_area         : (n) [m2]
+    point_displacement : (2 n, 3 + k) of the points by motions and modes
     """
     forces, stick_forces = (
         np.concatenate(
@@ -465,7 +489,7 @@ def assemble_friction_work(
             ],
             axis=1,
         )
-        @ displacement
+        @ point_displacement
         for slope in (monotonic_friction.secant_stiffness, monotonic_friction.stick_stiffness)
     )
     return FrictionWork(forces, stick_forces, monotonic_friction.cycle_loss @ point_area)

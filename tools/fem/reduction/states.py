@@ -21,8 +21,8 @@ from jointfmu.joints.bolted_joint.law import working_preload
 from jointfmu.quantity import Array
 
 from ..symmetric_factorisation import SymmetricFactorisation, find_reflections
-from ..whole_joint import COORDINATE_AXES, MIRROR_SIGNS, JointFiniteElements, LinearJoint
-from .patch_work import MIN_DISPLACEMENT
+from ..whole_joint import AXIS_INDICES, MIRROR_SIGNS, JointFiniteElements, LinearJoint
+from .patch_work import MIN_TANGENTIAL_DISPLACEMENT
 
 SHEAR_MOTIONS_OVER_SLIP_MOTION = (0.05, 0.2, 0.4, 0.6, 0.8, 1.0, 1.3)
 """Motions along x, y and about z over the motion at which the linear joint reaches its friction limit [1]."""
@@ -32,11 +32,11 @@ COMBINED_MOTION_COUNT = 12
 """Number of motions along and about all axes at once."""
 MAX_NEWTON_STEPS, RELATIVE_TOLERANCE = 40, 1e-9
 """Largest number of steps of Newton's method; residual over the largest prescribed motion [1] at its end."""
-EQUILIBRIUM_ITERATIONS = 3
+EQUILIBRIUM_ITERATION_COUNT = 3
 """Number of steps that bring the states in shear to equilibrium at all quadrature points."""
 
 
-def compute_states(
+def compute_deformation_states(
     linear_joint: LinearJoint, reduced_joint: BoltedJointSpring, normal_stiffness: Array, preload: float
 ) -> tuple[Array, Array]:
     """Compute deformation states of a joint, from which the modes of its bodies are chosen.
@@ -48,7 +48,7 @@ def compute_states(
     degrees of freedom of the bodies, relative to the preloaded joint, with reversed sign.
 
     linear_joint     : linear finite-element model of the joint
-    reduced_joint    : the reduced joint
+    reduced_joint    : joint with rigid bodies: contact points with the interface law
     normal_stiffness : (q) [Pa/m] of the preloaded interface at the quadrature points
     preload          : [N] per bolt
 
@@ -60,7 +60,7 @@ def compute_states(
         linear_joint.joint_model.bolt_positions - linear_joint.joint_model.contact_interface.centroid,
         preload,
     )
-    motions = np.array(list(joint_states.generate_motions()))
+    motions = np.array(list(joint_states.generate_attachment_motions()))
     deformation = cells.unit_load_displacement @ np.stack(
         [joint_states.solve_forces(motion) for motion in motions], axis=1
     )
@@ -76,7 +76,7 @@ class UnitLoadResponse:
     """Response of the bodies to unit loads on the n cells of the contact and on the b bolts.
 
     joint_model            : finite-element model of the joint
-    reduced_joint          : the reduced joint; its points are the centres of the cells
+    reduced_joint          : joint with rigid bodies; its contact points are the centres of the cells
     normal_stiffness       : (q) [Pa/m] of the preloaded interface at the quadrature points
     averaging_operators    : (3 n + b, unknowns) [1] averaging operators: mean displacement of each cell along
                              z, x and y, then elongation of each bolt; the transpose distributes unit loads
@@ -114,29 +114,35 @@ class UnitLoadResponse:
 
 
 def _solve_body(
-    joint: JointFiniteElements, body_index: int, unit_loads: sp.csr_matrix, displacement: Array
+    joint_model: JointFiniteElements, body_index: int, unit_loads: sp.csr_matrix, body_displacement: Array
 ) -> None:
     """Solve for displacements (n, k) [m/N] of a body under unit loads (k, n) [1]; its attachment is fixed.
 
-    body_index   : index of the body
-    displacement : (n, k) of zeros, to which the result is written
+    body_index        : index of the body
+    body_displacement : (n, k) of zeros, to which the result is written
     """
-    stiffness, fixed_unknowns = joint.stiffness_matrices[body_index], joint.attachment_unknowns[body_index]
-    free = np.setdiff1d(np.arange(len(displacement)), fixed_unknowns)
+    stiffness, fixed_unknowns = (
+        joint_model.stiffness_matrices[body_index],
+        joint_model.attachment_unknowns[body_index],
+    )
+    free = np.setdiff1d(np.arange(len(body_displacement)), fixed_unknowns)
     matrix = stiffness[free][:, free]
-    reflections = find_reflections(matrix, [joint.bodies[body_index]], free)
-    displacement[free] = SymmetricFactorisation(matrix, reflections).solve(unit_loads[:, free].T.tocsc())
+    reflections = find_reflections(matrix, [joint_model.bodies[body_index]], free)
+    body_displacement[free] = SymmetricFactorisation(matrix, reflections).solve_linear_system(
+        unit_loads[:, free].T.tocsc()
+    )
 
 
 def averaging_matrix(
     joint_model: JointFiniteElements, cell_centres: Array, normal_stiffness: Array
 ) -> sp.csr_matrix:
-    """Averaging matrix (n, q) [1] over cells of the contact, weighted by the normal stiffness (q) [Pa/m].
+    """Matrix (n, q) [1] that averages values at q quadrature points over n cells of the contact.
 
-    A quadrature point belongs to the cell with the nearest centre. A cell without quadrature points takes the
-    value at the nearest one.
+    The weights are area times normal stiffness. A quadrature point belongs to the cell with the nearest
+    centre. A cell without quadrature points takes the value at the nearest one.
 
-    cell_centres : (n, 2) [m] of the cells
+    cell_centres     : (n, 2) [m] of the cells
+    normal_stiffness : (q) [Pa/m] of the preloaded interface at the quadrature points
     """
     interface = joint_model.contact_interface
     position = interface.centred_position
@@ -155,15 +161,15 @@ def averaging_matrix(
 class CellwiseJoint:
     """Joint with the interface law in n cells of the contact and b bolts, for monotonic motions of side 2.
 
-    reduced_joint      : the reduced joint; it gives the law
-    compliance         : compliance of the bodies (3 n + b, 3 n + b) [m/N]
+    reduced_joint      : joint with rigid bodies, with the interface law of the cells
+    body_compliance    : compliance of the bodies (3 n + b, 3 n + b) [m/N]
     rigid_displacement : (3 n + b, 6) displacement of cells and bolts by rigid-body motions of side 2
     preload_approach   : approach (n) [m] of the cells in the preloaded joint
     preload            : [N] per bolt
     """
 
     reduced_joint: BoltedJointSpring
-    compliance: Array
+    body_compliance: Array
     rigid_displacement: Array
     preload_approach: Array
     preload: float
@@ -225,27 +231,27 @@ class CellwiseJoint:
         diagonal = [area * k, area * (secant + softening * u * u), area * (secant + softening * v * v), bolt]
         return force, CellTangentStiffness(np.concatenate(diagonal), area * softening * u * v)
 
-    def stiffness(self) -> Array:
+    def compute_stiffness(self) -> Array:
         """Stiffness (6, 6) [N/m, N, N.m] of the preloaded joint between its attachments."""
         tangent = self.contact_cell_forces(np.zeros(len(self.rigid_displacement)))[1]
-        displacement = tangent.solve(self.compliance, self.rigid_displacement)
-        return np.asarray(self.rigid_displacement.T @ tangent.multiply(displacement))
+        displacement = tangent.solve_with_compliance(self.body_compliance, self.rigid_displacement)
+        return np.asarray(self.rigid_displacement.T @ tangent.multiply_by_tangent(displacement))
 
-    def solve_forces(self, motion: Array) -> Array:
+    def solve_forces(self, attachment_motion: Array) -> Array:
         """Solve for the forces (3 n + b) [N] at a motion (6) [m, rad] of side 2's attachment.
 
         Newton's method may stop before it has converged: a state needs no exact equilibrium.
         """
-        prescribed = self.rigid_displacement @ motion
+        prescribed = self.rigid_displacement @ attachment_motion
         g = np.zeros_like(prescribed)
         force, tangent = self.contact_cell_forces(g)
-        residual = g + self.compliance @ force - prescribed
+        residual = g + self.body_compliance @ force - prescribed
         for _ in range(MAX_NEWTON_STEPS):
-            step = -tangent.solve(self.compliance, residual)
+            step = -tangent.solve_with_compliance(self.body_compliance, residual)
             for halvings in range(5):
                 g_trial = g + 0.5**halvings * step
                 force, tangent = self.contact_cell_forces(g_trial)
-                trial_residual = g_trial + self.compliance @ force - prescribed
+                trial_residual = g_trial + self.body_compliance @ force - prescribed
                 if np.linalg.norm(trial_residual) < np.linalg.norm(residual):
                     break
             g, residual = g_trial, trial_residual
@@ -253,9 +259,9 @@ class CellwiseJoint:
                 break
         return force
 
-    def generate_motions(self) -> Iterator[Array]:
+    def generate_attachment_motions(self) -> Iterator[Array]:
         """Generate motions (6) [m, rad] of side 2 into slip and opening: along each axis, then along all."""
-        joint, K = self.reduced_joint.joint, np.diag(self.stiffness())
+        joint, K = self.reduced_joint.joint, np.diag(self.compute_stiffness())
         radius = np.sqrt(
             self.reduced_joint.points.area_share @ np.sum(self.reduced_joint.points.position**2, axis=1)
         )
@@ -268,7 +274,7 @@ class CellwiseJoint:
             ):
                 yield factor * unit * (np.arange(6) == axis)
         for number in range(COMBINED_MOTION_COUNT):
-            yield (2.0 * ((0.5 + (number + 1.0) * LOW_DISCREPANCY_STEPS) % 1.0) - 1.0) * unit
+            yield (2.0 * ((0.5 + (number + 1.0) * LOW_DISCREPANCY_SEQUENCE_STEPS) % 1.0) - 1.0) * unit
 
 
 @dataclass(frozen=True, slots=True)
@@ -283,7 +289,7 @@ class CellTangentStiffness:
     diagonal_stiffness: Array
     tangential_coupling: Array
 
-    def multiply(self, displacements: Array) -> Array:
+    def multiply_by_tangent(self, displacements: Array) -> Array:
         """Product (3 n + b, k) of the tangent stiffness and a matrix of displacements (3 n + b, k)."""
         n = self.tangential_coupling.size
         product = self.diagonal_stiffness[:, None] * displacements
@@ -291,7 +297,7 @@ class CellTangentStiffness:
         product[2 * n : 3 * n] += self.tangential_coupling[:, None] * displacements[n : 2 * n]
         return product
 
-    def solve(self, compliance: Array, right_side: Array) -> Array:
+    def solve_with_compliance(self, body_compliance: Array, right_side: Array) -> Array:
         """Solve (I + C T) x = r for x (3 n + b, ...), with this tangent T and a compliance C.
 
         Both matrices are symmetric and positive semidefinite. With T = L L^T the symmetric system
@@ -303,17 +309,17 @@ class CellTangentStiffness:
         below = np.divide(self.tangential_coupling, along_x, out=np.zeros(n), where=along_x > 0.0)
         root[2 * n : 3 * n] = np.sqrt(np.maximum(self.diagonal_stiffness[2 * n : 3 * n] - below**2, 0.0))
 
-        def multiply_root(displacements: Array) -> Array:
-            """Product of L^T and a matrix (3 n + b, ...), L the root of the tangent stiffness."""
+        def multiply_by_root(displacements: Array) -> Array:
+            """Product of L^T and a matrix (3 n + b, ...); L: Cholesky factor of the tangent stiffness."""
             product = (root * displacements.T).T
             product[n : 2 * n] += (below * displacements[2 * n : 3 * n].T).T
             return product
 
-        spread = multiply_root(compliance)
-        system = multiply_root(spread.T)
+        spread = multiply_by_root(body_compliance)
+        system = multiply_by_root(spread.T)
         system[np.diag_indices(len(system))] += 1.0
         factor = cho_factor(system, overwrite_a=True, check_finite=False)
-        y = cho_solve(factor, multiply_root(right_side), overwrite_b=True, check_finite=False)
+        y = cho_solve(factor, multiply_by_root(right_side), overwrite_b=True, check_finite=False)
         return np.asarray(right_side - spread.T @ y)
 
 
@@ -327,7 +333,7 @@ def refine_equilibrium(
     linear_joint: LinearJoint,
     reduced_joint: BoltedJointSpring,
     normal_stiffness: Array,
-    motions: Array,
+    state_motions: Array,
     negative_deformation: Array,
 ) -> Array:
     """Iterate s states of the joint towards equilibrium with the law at all quadrature points.
@@ -335,7 +341,7 @@ def refine_equilibrium(
     Returns the refined deformation (n, s) [m] of the bodies with its sign reversed.
 
     normal_stiffness     : (q) [Pa/m] of the preloaded interface at the quadrature points
-    motions              : (s, 6) [m, rad] of side 2
+    state_motions        : (s, 6) [m, rad] of side 2
     negative_deformation : (n, s) [m] reversed deformation in equilibrium with the law in the cells
 
     Each iteration uses the stiffness of the preloaded joint. Slip only lowers the stiffness, so the iteration
@@ -345,33 +351,33 @@ def refine_equilibrium(
     law = reduced_joint.friction_law.foundation()
     preloaded = approach_at_stiffness(reduced_joint, normal_stiffness)
     interface, curve = joint.contact_interface, reduced_joint.curve
-    relative = [joint.relative_displacement_matrix(axis) for axis in COORDINATE_AXES]
+    relative = [joint.relative_displacement_matrix(axis) for axis in AXIS_INDICES]
     stretch = sp.csr_matrix(joint.elongation_matrix)
-    rigid = linear_joint.rigid_displacement @ motions.T
+    rigid = linear_joint.rigid_displacement @ state_motions.T
     prescribed = [rows @ rigid for rows in (*relative, stretch.T)]
-    last_decrement = np.full(len(motions), np.inf)
+    last_decrement = np.full(len(state_motions), np.inf)
     p_preload = curve.derivatives(preloaded, 0)[0][:, None]
     displacement = -negative_deformation
-    for _ in range(EQUILIBRIUM_ITERATIONS):
+    for _ in range(EQUILIBRIUM_ITERATION_COUNT):
         u, v, opening, elongation = (
             start + rows @ displacement
             for start, rows in zip(prescribed, (*relative, stretch.T), strict=True)
         )
         approach = preloaded[:, None] - opening
-        size = np.maximum(np.hypot(u, v), MIN_DISPLACEMENT)
+        size = np.maximum(np.hypot(u, v), MIN_TANGENTIAL_DISPLACEMENT)
         secant = interface.quadrature_area[:, None] * law.virgin_traction(approach, size) / size
         loads = relative[0].T @ (secant * u) + relative[1].T @ (secant * v)
         loads += linear_joint.bolt_stiffness * (stretch @ elongation)
         loads -= relative[2].T @ (
             interface.quadrature_area[:, None] * (curve.derivatives(approach, 0)[0] - p_preload)
         )
-        residual = -(linear_joint.body_matrix @ displacement + loads)
-        step = linear_joint.solve(residual)
+        residual = -(linear_joint.body_stiffness_matrix @ displacement + loads)
+        step = linear_joint.solve_displacements(residual)
         decrement = np.sum(step * residual, axis=0)
         displacement = displacement + np.where(decrement < last_decrement, step, 0.0)
         last_decrement = np.minimum(decrement, last_decrement)
     return -displacement
 
 
-LOW_DISCREPANCY_STEPS = 0.8566748838545029 ** np.arange(1.0, 7.0)
+LOW_DISCREPANCY_SEQUENCE_STEPS = 0.8566748838545029 ** np.arange(1.0, 7.0)
 """Steps of a low-discrepancy sequence in six dimensions: powers of the inverse root of x^7 = x + 1."""

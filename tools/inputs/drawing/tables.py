@@ -36,113 +36,130 @@ FINISH_COLUMNS = {
 
 
 @dataclass(frozen=True, slots=True)
-class TableRow:
+class MaterialOrFinish:
     """Row of a shipped table of materials or finishes: name, other names, title, and {column: number}."""
 
-    name: str
-    aliases: tuple[str, ...]
-    title: str
-    numbers: Mapping[str, SourcedNumber]
+    row_name: str
+    row_aliases: tuple[str, ...]
+    display_title: str
+    sourced_numbers: Mapping[str, SourcedNumber]
 
 
 @cache
-def read_table(table_name: str) -> dict[str, TableRow]:
+def read_material_or_finish_table(table_name: str) -> dict[str, MaterialOrFinish]:
     """Read the shipped table of materials or of finishes: {name: row}.
 
     table_name : `materials` or `finishes`
     """
-    path, document = _read_document(table_name)
+    path, document = _read_table_document(table_name)
     columns = {"materials": MATERIAL_COLUMNS, "finishes": FINISH_COLUMNS}[table_name]
     rows = {}
     for title, body in document.items():
         plain = {key: body.pop(key) for key in ("also", "title")}
         values, kinds, sources = read_entries(path, columns, body)
         known = {key: SourcedNumber(float(value), kinds[key], sources[key]) for key, value in values.items()}
-        rows[title] = TableRow(title, tuple(plain["also"]), plain["title"], known)
+        rows[title] = MaterialOrFinish(title, tuple(plain["also"]), plain["title"], known)
     return rows
 
 
-def find_row(table_name: str, row_name: str) -> TableRow:
+def find_table_row(table_name: str, row_name: str) -> MaterialOrFinish:
     """Find a row of the table of materials or finishes by one of its names. Case and hyphens are ignored.
 
     Raises ValueError if no row has the name.
     """
-    rows = read_table(table_name)
+    rows = read_material_or_finish_table(table_name)
     for candidate in rows.values():
-        if _normalise_name(row_name) in map(_normalise_name, (candidate.name, *candidate.aliases)):
+        if _normalise_name(row_name) in map(_normalise_name, (candidate.row_name, *candidate.row_aliases)):
             return candidate
     noun = {"materials": "material", "finishes": "finish"}[table_name]
     raise ValueError(
-        f"{noun} {row_name!r} is unknown, allowed are {', '.join(rows)} (jointfmu new {table_name})"
+        f"{noun} {row_name!r} is unknown, allowed are {', '.join(rows)}; jointfmu new {table_name} lists "
+        "their values"
     )
 
 
-def _normalise_name(name: str) -> str:
+def _normalise_name(row_name: str) -> str:
     """Name of a material or finish without case and hyphens, for comparisons."""
-    return name.lower().replace("-", " ").strip()
+    return row_name.lower().replace("-", " ").strip()
 
 
 @dataclass(frozen=True, slots=True)
 class Thread:
     """Sizes of a metric bolt, lengths [m].
 
-    nominal_diameter : nominal diameter
-    pitch            : pitch of the thread
-    hole             : diameter of the clearance hole
-    hexagon, socket  : least outer diameter d_w of the bearing face of a hexagon head and of a socket head
+    pitch         : pitch of the thread
+    hole_diameter : diameter of the clearance hole
+    hexagon_bearing_diameter, socket_bearing_diameter : least outer diameter d_w of the bearing face of a
+        hexagon head and of a socket head
     """
 
-    name: str
+    thread_name: str
     nominal_diameter: float
     pitch: float
-    hole: float
-    hexagon: float
-    socket: float
+    hole_diameter: float
+    hexagon_bearing_diameter: float
+    socket_bearing_diameter: float
+
+    def bearing_diameter(self, head_type: str) -> float:
+        """Least outer diameter d_w [m] of the bearing face of a head: "hexagon" or "socket"."""
+        return {"hexagon": self.hexagon_bearing_diameter, "socket": self.socket_bearing_diameter}[head_type]
 
 
 @cache
 def read_threads() -> dict[str, Thread]:
-    """Read the bolts with coarse pitch: {name: bolt}."""
-    _, document = _read_document("bolts")
-    columns = [conversion_factor(column["unit"], "m") for column in document["columns"].values()]
-    names = list(document["columns"])
+    """Read the table of metric bolts with coarse pitch: {thread name: sizes}."""
+    _, document = _read_table_document("bolts")
+    units = [conversion_factor(column["unit"], "m") for column in document["columns"].values()]
     mm = conversion_factor("mm", "m")
-    return {
-        name: Thread(
+    threads = {}
+    for name, row in document["rows"].items():
+        sizes = dict(
+            zip(document["columns"], (v * unit for v, unit in zip(row, units, strict=True)), strict=True)
+        )
+        threads[name] = Thread(
             name,
             nominal_diameter=float(name[1:]) * mm,
-            **{c: v * f for c, v, f in zip(names, values, columns, strict=True)},
+            pitch=sizes["pitch"],
+            hole_diameter=sizes["hole"],
+            hexagon_bearing_diameter=sizes["hexagon"],
+            socket_bearing_diameter=sizes["socket"],
         )
-        for name, values in document["rows"].items()
-    }
+    return threads
 
 
 @cache
-def fine_pitches() -> dict[str, tuple[float, ...]]:
-    """Fine pitches of the bolts: {name of the coarse thread: pitches [m]}."""
-    stated = dict(_read_document("bolts")[1]["fine"])
+def read_fine_pitches() -> dict[str, tuple[float, ...]]:
+    """Read the fine pitches of metric bolts: {name of the coarse thread: pitches [m]}."""
+    stated = dict(_read_table_document("bolts")[1]["fine"])
     size = conversion_factor(stated.pop("unit"), "m")
     stated.pop("source")
     return {name: tuple(pitch * size for pitch in pitches) for name, pitches in stated.items()}
 
 
-def find_thread(name: str, pitch: float | None = None) -> Thread:
+def find_thread(thread_name: str, thread_pitch: float | None = None) -> Thread:
     """Find a metric thread by its name, as in M12, with the coarse pitch or a fine pitch [m].
 
     Raises ValueError for an unknown thread or pitch.
     """
-    if name not in read_threads():
-        raise ValueError(f"thread {name} is unknown, allowed are {', '.join(read_threads())}")
-    coarse = read_threads()[name]
-    if pitch is None:
+    if thread_name not in read_threads():
+        raise ValueError(f"thread {thread_name} is unknown, allowed are {', '.join(read_threads())}")
+    coarse = read_threads()[thread_name]
+    if thread_pitch is None:
         return coarse
-    allowed = (coarse.pitch, *fine_pitches().get(name, ()))
+    allowed = (coarse.pitch, *read_fine_pitches().get(thread_name, ()))
     for known in allowed:
-        if math.isclose(known, pitch, rel_tol=1e-6):
+        if math.isclose(known, thread_pitch, rel_tol=1e-6):
             is_coarse = known == coarse.pitch
-            return coarse if is_coarse else replace(coarse, name=f"{name}x{known * 1e3:g}", pitch=known)
+            return (
+                coarse
+                if is_coarse
+                else replace(coarse, thread_name=f"{thread_name}x{known * 1e3:g}", pitch=known)
+            )
     pitches = ", ".join(f"{known * 1e3:g}" for known in allowed)
-    raise ValueError(f"thread {name}x{pitch * 1e3:g} is unknown, allowed pitches of {name} are {pitches} mm")
+    raise ValueError(
+        f"thread {thread_name}x{thread_pitch * 1e3:g} is unknown, allowed pitches of {thread_name} are "
+        f"{pitches} mm"
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,7 +174,7 @@ class Washer:
 @cache
 def read_washers() -> dict[str, Washer]:
     """Read the washers of ISO 7089: {name of the coarse thread: washer}."""
-    stated = dict(_read_document("bolts")[1]["washers"])
+    stated = dict(_read_table_document("bolts")[1]["washers"])
     size = conversion_factor(stated.pop("unit"), "m")
     stated.pop("source")
     return {name: Washer(*(value * size for value in row)) for name, row in stated.items()}
@@ -165,19 +182,19 @@ def read_washers() -> dict[str, Washer]:
 
 def find_washer(thread: Thread) -> Washer:
     """Find the washer of ISO 7089 for a thread, of coarse or fine pitch."""
-    return read_washers()[thread.name.split("x")[0]]
+    return read_washers()[thread.thread_name.split("x")[0]]
 
 
 @dataclass(frozen=True, slots=True)
 class TighteningMethod:
     """Method of tightening a bolt, with the scatter of its preload.
 
-    title               : name of the method in words
+    display_title       : name of the method in words
     tightening_factors  : least and greatest tightening factor alpha_A = F_Mmax/F_Mmin [1]
     depends_on_friction : whether the preload depends on the friction in thread and head
     """
 
-    title: str
+    display_title: str
     tightening_factors: tuple[float, float]
     depends_on_friction: bool
 
@@ -187,14 +204,14 @@ def read_tightening_methods() -> dict[str, TighteningMethod]:
     """Read the methods of tightening: {name: method}."""
     return {
         name: TighteningMethod(body["title"], tuple(body["factor"]), body["friction"])
-        for name, body in _read_document("bolts")[1]["tightening"].items()
+        for name, body in _read_table_document("bolts")[1]["tightening"].items()
         if isinstance(body, dict)
     }
 
 
-def thread_source(bolt_column: str) -> str:
-    """Source text of a column in the table of bolts."""
-    return str(_read_document("bolts")[1]["columns"][bolt_column]["source"])
+def find_bolt_column_source(bolt_column: str) -> str:
+    """Source (standard) of the numbers in a column of the shipped table of bolts, as text."""
+    return str(_read_table_document("bolts")[1]["columns"][bolt_column]["source"])
 
 
 @cache
@@ -203,7 +220,7 @@ def read_embedding() -> list[tuple[float, tuple[float, ...]]]:
 
     The rows are in ascending order of Rz.
     """
-    stated = dict(_read_document("bolts")[1]["embedding"])
+    stated = dict(_read_table_document("bolts")[1]["embedding"])
     size = conversion_factor(stated.pop("unit"), "m")
     stated.pop("source")
     return sorted((float(Rz) * size, tuple(v * size for v in row)) for Rz, row in stated.items())
@@ -212,7 +229,7 @@ def read_embedding() -> list[tuple[float, tuple[float, ...]]]:
 @cache
 def read_property_classes() -> dict[str, dict[str, tuple[float, float]]]:
     """Read the property classes of bolts: {class: {"yield" or "proof": stress [Pa] up to M16, and above}}."""
-    stated = _read_document("bolts")[1]["classes"]
+    stated = _read_table_document("bolts")[1]["classes"]
     size = conversion_factor(stated["unit"], "Pa")
     return {
         name: {key: (pair[0] * size, pair[1] * size) for key, pair in body.items()}
@@ -221,18 +238,21 @@ def read_property_classes() -> dict[str, dict[str, tuple[float, float]]]:
     }
 
 
-MIN_LARGE_THREAD_DIAMETER = 16e-3
+STRENGTH_CHANGE_DIAMETER = 16e-3
 """Thread diameter [m] above which the second strength of a property class in the table holds."""
 
 
 def property_class_strength(property_class: str, strength_kind: str, thread: Thread) -> float:
-    """Strength [Pa] of a property class, "yield" or "proof", for a thread."""
+    """Yield strength or proof stress [Pa] of the bolts of a property class, for a thread.
+
+    strength_kind : "yield" or "proof"
+    """
     return read_property_classes()[property_class][strength_kind][
-        int(thread.nominal_diameter > MIN_LARGE_THREAD_DIAMETER)
+        int(thread.nominal_diameter > STRENGTH_CHANGE_DIAMETER)
     ]
 
 
-def _read_document(table_name: str) -> tuple[Path, dict[str, Any]]:
+def _read_table_document(table_name: str) -> tuple[Path, dict[str, Any]]:
     """Read the TOML document of a shipped table."""
     path = Path(str(files("jointfmu_models") / "tables" / f"{table_name}.toml"))
     document = read_document(path, "a table")

@@ -20,14 +20,14 @@ E_WASHER = E_BOLT
 """Young's modulus [Pa] of a steel washer."""
 YIELD_UTILISATION = 0.9
 """Share of the yield strength that is used during tightening [1]."""
-DEFAULT_FRICTION, FRICTION_INTERVAL = 0.12, (0.08, 0.16)
+DEFAULT_BOLT_FRICTION, BOLT_FRICTION_INTERVAL = 0.12, (0.08, 0.16)
 """Coefficient of friction [1] in the thread and under the head if none is known, and its interval: Table A5,
 friction class B."""
-ROUNDING_TOLERANCE = 1e-6
+RZ_ROUNDING_TOLERANCE = 1e-6
 """Relative excess of Rz over Rz of a table row [1] that is ignored: 10 um belong to the row of 10 um."""
-FRICTION_SOURCE = "VDI 2230, Table A5, friction class B"
+BOLT_FRICTION_SOURCE = "VDI 2230, Table A5, friction class B"
 """Source text of the coefficients of friction in thread and under head."""
-MAX_UTILISATION_ERROR = 0.02
+MAX_YIELD_UTILISATION_EXCESS = 0.02
 """Relative excess [1] over YIELD_UTILISATION that counts as none: Table A1 prints torques with two digits."""
 
 
@@ -47,11 +47,15 @@ def stress_area(thread: Thread) -> float:
 
 
 def bolt_compliance(
-    thread: Thread, grip: float, unthreaded_length: float, head_type: str, thread_modulus: float | None = None
+    thread: Thread,
+    grip_length: float,
+    unthreaded_length: float,
+    head_type: str,
+    thread_modulus: float | None = None,
 ) -> float:
     """Compliance delta_S [m/N] of a bolt: head, shank, free thread, engaged thread and nut (section 5.1.1).
 
-    grip              : clamping length l_K [m] between head and nut, or between head and tapped part
+    grip_length       : clamping length l_K [m] between head and nut, or between head and tapped part
     unthreaded_length : length of the shank without thread [m]
     head_type         : "hexagon" (effective length 0.5 d) or "socket" (0.4 d)
     thread_modulus    : Young's modulus [Pa] of a tapped part; None: a nut with the modulus of the bolt
@@ -64,17 +68,17 @@ def bolt_compliance(
         if thread_modulus is None
         else 0.33 * thread.nominal_diameter / (thread_modulus * nominal)
     )
-    free = grip - unthreaded_length + 0.5 * thread.nominal_diameter
+    free = grip_length - unthreaded_length + 0.5 * thread.nominal_diameter
     return float((length + unthreaded_length) / (E_BOLT * nominal) + free / (E_BOLT * minor) + nut)
 
 
-def cone_slope(grip: float, bearing_diameter: float, outer_diameter: float, is_tapped: bool) -> float:
+def cone_slope(grip_length: float, bearing_diameter: float, outer_diameter: float, is_tapped: bool) -> float:
     """tan(phi) [1] of the deformation cone of a through-bolted or a tapped joint (Eqs. 47 and 48).
 
     bearing_diameter : outer diameter d_w of the bearing face under the head [m]
     outer_diameter   : diameter D_A of the clamped parts [m], at least d_w
     """
-    beta, y = grip / bearing_diameter, max(outer_diameter / bearing_diameter, 1.0)
+    beta, y = grip_length / bearing_diameter, max(outer_diameter / bearing_diameter, 1.0)
     if is_tapped:
         return float(0.348 + 0.013 * np.log(beta) + 0.193 * np.log(y))
     return float(0.362 + 0.032 * np.log(0.5 * beta) + 0.153 * np.log(y))
@@ -113,7 +117,8 @@ def members_compliance(
 
     clamped_parts : clamped parts, starting at the head; of a tapped joint up to the thread
 
-    A cone widens from the head, and one from the nut. For one modulus the result equals Eqs. 36 and 38. A
+    A cone widens from the head, and one from the nut. If all parts have the same Young's modulus E, the
+    result equals Eqs. 36 and 38 of VDI 2230. A
     section of a cone from diameter D_1 to D_2 around a hole d_h has the compliance
     ln[(D_1 + d_h)(D_2 - d_h)/((D_1 - d_h)(D_2 + d_h))]/(pi E d_h tan phi).
     """
@@ -155,7 +160,9 @@ def washer_compliance(bearing_diameter: float, washer: Washer, tan_phi: float) -
     return members_compliance(layers, *sizes, tan_phi, is_tapped=True)
 
 
-def comparative_stress(thread: Thread, preload: float, thread_friction: float = DEFAULT_FRICTION) -> float:
+def comparative_stress(
+    thread: Thread, preload: float, thread_friction: float = DEFAULT_BOLT_FRICTION
+) -> float:
     """Comparative stress sigma_red,M [Pa] of a shank bolt in tightening: von Mises, tension and torsion.
 
     preload         : assembly preload F_M [N]
@@ -169,7 +176,7 @@ def comparative_stress(thread: Thread, preload: float, thread_friction: float = 
 
 
 def assembly_preload(
-    thread: Thread, yield_strength: float, thread_friction: float = DEFAULT_FRICTION
+    thread: Thread, yield_strength: float, thread_friction: float = DEFAULT_BOLT_FRICTION
 ) -> float:
     """Assembly preload F_M [N] of a shank bolt (Table A1).
 
@@ -216,22 +223,24 @@ def embedding_depth(Rz: float, interface_count: int, is_tapped: bool) -> float:
     """
     rows = tables.read_embedding()
     thread, seat, interface = next(
-        (row for limit, row in rows if limit * (1.0 + ROUNDING_TOLERANCE) >= Rz), rows[-1][1]
+        (row for limit, row in rows if limit * (1.0 + RZ_ROUNDING_TOLERANCE) >= Rz), rows[-1][1]
     )
     return thread + (1 if is_tapped else 2) * seat + interface_count * interface
 
 
-def shank_length(thread: Thread, grip: float, head_type: str, is_tapped: bool) -> float:
+def unthreaded_shank_length(thread: Thread, grip_length: float, head_type: str, is_tapped: bool) -> float:
     """Length [m] of the shank without thread inside the grip; the bolt ends two pitches beyond its nut.
 
     The thread length is that of ISO 4014 (2 d + 6 mm) and ISO 4762 (2 d + 12 mm), for bolts up to 125 mm.
     """
-    length = grip + (
+    length = grip_length + (
         thread.nominal_diameter if is_tapped else 0.8 * thread.nominal_diameter + 2.0 * thread.pitch
     )
     return float(
         np.clip(
-            length - 2.0 * thread.nominal_diameter - {"hexagon": 6e-3, "socket": 12e-3}[head_type], 0.0, grip
+            length - 2.0 * thread.nominal_diameter - {"hexagon": 6e-3, "socket": 12e-3}[head_type],
+            0.0,
+            grip_length,
         )
     )
 
@@ -241,14 +250,14 @@ STRONGEST_PROPERTY_CLASS = "12.9"
 
 
 def describe_stated_bolt(thread_name: str, property_class: str) -> str:
-    """Describe the bolt that the user states, for the source of the preload; `proof_load` reads this text."""
+    """Text with thread and property class of the bolt that the user states, for the source of a preload."""
     return f"bolts {thread_name}-{property_class} as stated"
 
 
 def proof_load(hole_diameter: float, preload_source: str = "") -> tuple[float, str] | None:
-    """Proof load [N] of the bolts that the source of the preload states, and its description.
+    """Proof load [N] of the bolt that the source text of a preload names, and the name of this load.
 
-    If the source states no bolt: proof load of the largest bolt that fits through the hole, in the strongest
+    If the text names no bolt: proof load of the largest bolt that fits through the hole, in the strongest
     property class. None if no bolt of the tables fits.
 
     hole_diameter  : [m] of the clearance hole
@@ -261,12 +270,12 @@ def proof_load(hole_diameter: float, preload_source: str = "") -> tuple[float, s
     if stated and stated[1] in threads:
         bolt = find_thread(stated[1], float(stated[2]) * 1e-3 if stated[2] else None)
         load = property_class_strength(stated[3], "proof", bolt) * stress_area(bolt)
-        return load, f"the proof load of {bolt.name}-{stated[3]} (ISO 898-1)"
+        return load, f"the proof load of {bolt.thread_name}-{stated[3]} (ISO 898-1)"
     fitting = [thread for thread in threads.values() if thread.nominal_diameter < hole_diameter]
     largest = max(threads.values(), key=lambda thread: thread.nominal_diameter)
     if not fitting or hole_diameter > 1.2 * largest.nominal_diameter:
         return None
     bolt = max(fitting, key=lambda thread: thread.nominal_diameter)
     load = property_class_strength(STRONGEST_PROPERTY_CLASS, "proof", bolt) * stress_area(bolt)
-    name = f"{bolt.name}, class {STRONGEST_PROPERTY_CLASS} (ISO 898-1)"
+    name = f"{bolt.thread_name}, class {STRONGEST_PROPERTY_CLASS} (ISO 898-1)"
     return load, f"the proof load of {name}, the largest bolt that passes the hole"

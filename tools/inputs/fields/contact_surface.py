@@ -10,14 +10,14 @@ from scipy.spatial import cKDTree
 from jointfmu.quantity import Array
 from jointfmu.quantity.refusal import InputRefusal
 
-from .mesh import FACE_CORNER_COUNTS, nodal_areas
-from .nodal_result import ContactField, NodalResult, NodeIndices
+from .mesh import FACE_CORNER_COUNTS, compute_nodal_areas
+from .nodal_result import ContactPressureField, NodalResult, NodeIndices
 
 AXIS_NAMES = "xyz"
 """Names of the axes of a file."""
-PLANE_TOLERANCE = 1e-3
+PLANARITY_TOLERANCE = 1e-3
 """Largest distance of a node from the contact plane over the size of the contact [1]."""
-COINCIDENCE_TOLERANCE = 1e-6
+NODE_COINCIDENCE_TOLERANCE = 1e-6
 """Distance of two nodes over the size of the contact [1], below which they coincide."""
 BODY_SIDES = ("below", "above")
 """Sides of the contact plane on which the body may lie whose surface is read."""
@@ -54,75 +54,77 @@ class ContactPlane:
             )
         return x, 3 - n - x, n
 
-    def project(self, position: Array) -> Array:
+    def project_to_contact_plane(self, node_positions: Array) -> Array:
         """Project positions (n, 3) of a file to positions (n, 2) in the plane of the joint."""
         x, y, n = self.axis_indices()
         sign = 1.0 if (x - n) % 3 == 1 else -1.0
-        return np.column_stack([position[:, x], sign * position[:, y]])
+        return np.column_stack([node_positions[:, x], sign * node_positions[:, y]])
 
 
 @dataclass(frozen=True, slots=True)
 class ContactSurface:
     """Contact surface: nodes (n) with area, position in the plane of the joint, and pressure.
 
-    source_result : nodal result from which the nodes come
-    node_indices  : (n) indices in the nodal result
-    area          : (n) [m2]
-    position      : (n, 2) [m] in the plane of the joint
-    pressure      : (n) [Pa]
+    source_result  : nodal result from which the nodes come
+    node_indices   : (n) indices in the nodal result
+    nodal_area     : (n) [m2]
+    node_positions : (n, 2) [m] in the plane of the joint
+    nodal_pressure : (n) [Pa]
     """
 
     source_result: NodalResult
     node_indices: NodeIndices
-    area: Array
-    position: Array
-    pressure: Array
+    nodal_area: Array
+    node_positions: Array
+    nodal_pressure: Array
 
-    def describe_node(self, contact_node: int) -> str:
+    def describe_node(self, contact_node_index: int) -> str:
         """Name a contact node in a message: file and node number."""
-        return self.source_result.describe_node(int(self.node_indices[contact_node]))
+        return self.source_result.describe_node(int(self.node_indices[contact_node_index]))
 
-    def select_pressure_field(self, node_mask: NDArray[np.bool_]) -> ContactField:
+    def select_pressure_field(self, node_mask: NDArray[np.bool_]) -> ContactPressureField:
         """Select nodes by a mask (n), and return the pressure field of these nodes."""
-        return ContactField(self.area[node_mask], self.position[node_mask], self.pressure[node_mask])
+        return ContactPressureField(
+            self.nodal_area[node_mask], self.node_positions[node_mask], self.nodal_pressure[node_mask]
+        )
 
 
-def extract_surface(nodal_result: NodalResult, contact_plane: ContactPlane) -> ContactSurface:
+def extract_contact_surface(nodal_result: NodalResult, contact_plane: ContactPlane) -> ContactSurface:
     """Extract the contact surface from a nodal result.
 
     Raises ValueError with the node: no node has a pressure, a node lies off the plane, two nodes coincide, a
     pressure is negative or not finite, an area is not positive.
     """
-    inside = contact_plane.project(nodal_result.position)
-    if nodal_result.area is not None:
-        index, area = np.arange(len(inside)), nodal_result.area
+    inside = contact_plane.project_to_contact_plane(nodal_result.node_positions)
+    if nodal_result.nodal_area is not None:
+        index, area = np.arange(len(inside)), nodal_result.nodal_area
     else:
-        faces = _contact_faces(nodal_result, contact_plane)
-        area = nodal_areas(inside, faces)
+        faces = _find_contact_faces(nodal_result, contact_plane)
+        area = compute_nodal_areas(inside, faces)
         index = np.unique(np.concatenate([block.ravel() for block in faces]))
-    pressure = nodal_result.pressure[index]
+    pressure = nodal_result.nodal_pressure[index]
     if nodal_result.omits_open_nodes:
         pressure = np.nan_to_num(pressure, nan=0.0)
     contact = ContactSurface(nodal_result, index, area[index], inside[index], pressure)
-    _check_surface(contact)
+    _check_contact_surface(contact)
     return contact
 
 
-def _check_surface(contact_surface: ContactSurface) -> None:
+def _check_contact_surface(contact_surface: ContactSurface) -> None:
     """Raise ValueError for a nodal pressure or area out of range, and for nodes that coincide."""
-    p = contact_surface.pressure
+    p = contact_surface.nodal_pressure
     for invalid, text in (
         (~np.isfinite(p), "pressure = {p:g} is not a finite number"),
         (p < 0.0, "pressure = {p:g} Pa is outside [0, inf)"),
-        (~(contact_surface.area > 0.0), "area = {a:g} m2 is outside (0, inf)"),
+        (~(contact_surface.nodal_area > 0.0), "area = {a:g} m2 is outside (0, inf)"),
     ):
         if np.any(invalid):
             i = int(np.argmax(invalid))
             raise ValueError(
-                f"{contact_surface.describe_node(i)}: {text.format(p=p[i], a=contact_surface.area[i])}"
+                f"{contact_surface.describe_node(i)}: {text.format(p=p[i], a=contact_surface.nodal_area[i])}"
             )
-    size = float(np.max(np.ptp(contact_surface.position, axis=0)))
-    coincident = cKDTree(contact_surface.position).query_pairs(COINCIDENCE_TOLERANCE * size)
+    size = float(np.max(np.ptp(contact_surface.node_positions, axis=0)))
+    coincident = cKDTree(contact_surface.node_positions).query_pairs(NODE_COINCIDENCE_TOLERANCE * size)
     if coincident:
         first, second = min(coincident)
         raise ValueError(
@@ -133,19 +135,22 @@ def _check_surface(contact_surface: ContactSurface) -> None:
         )
 
 
-def _contact_faces(nodal_result: NodalResult, contact_plane: ContactPlane) -> list[NodeIndices]:
+def _find_contact_faces(nodal_result: NodalResult, contact_plane: ContactPlane) -> list[NodeIndices]:
     """Element faces in the contact plane that belong to bodies with pressure.
 
     The contact plane contains all nodes with pressure; ValueError if these nodes are not plane.
     """
-    loaded = np.flatnonzero(np.nan_to_num(nodal_result.pressure) != 0.0)
+    loaded = np.flatnonzero(np.nan_to_num(nodal_result.nodal_pressure) != 0.0)
     if not loaded.size:
-        raise ValueError(f"{nodal_result.path}: no node has a pressure")
-    _check_not_line(nodal_result, loaded)
+        raise ValueError(f"{nodal_result.result_path}: all pressures are 0; expected nodes in contact")
+    _check_nodes_not_collinear(nodal_result, loaded)
     axis = contact_plane.axis_indices()[2]
-    height, size = nodal_result.position[:, axis], float(np.max(np.ptp(nodal_result.position, axis=0)))
+    height, size = (
+        nodal_result.node_positions[:, axis],
+        float(np.max(np.ptp(nodal_result.node_positions, axis=0))),
+    )
     level = float(np.median(height[loaded]))
-    off_plane = np.abs(height - level) > PLANE_TOLERANCE * size
+    off_plane = np.abs(height - level) > PLANARITY_TOLERANCE * size
     if np.any(off_plane[loaded]):
         i = int(loaded[np.argmax(off_plane[loaded])])
         raise InputRefusal(
@@ -156,7 +161,7 @@ def _contact_faces(nodal_result: NodalResult, contact_plane: ContactPlane) -> li
     candidate = ~off_plane & np.isin(
         _body_of_node(nodal_result), _select_bodies(nodal_result, loaded, height - level, contact_plane)
     )
-    faces = [block[np.all(candidate[block], axis=1)] for block in nodal_result.faces]
+    faces = [block[np.all(candidate[block], axis=1)] for block in nodal_result.boundary_faces]
     faces = _drop_empty_midside_nodes(nodal_result, [block for block in faces if block.size])
     used = np.zeros(len(height), dtype=bool)
     for block in faces:
@@ -164,37 +169,41 @@ def _contact_faces(nodal_result: NodalResult, contact_plane: ContactPlane) -> li
     unused = loaded[~used[loaded] & candidate[loaded]]
     if unused.size:
         raise ValueError(
-            f"{nodal_result.describe_node(int(unused[0]))}: has a pressure and is on no face of the contact"
+            f"{nodal_result.describe_node(int(unused[0]))}: has a pressure, but is on no element face in the "
+            "contact plane; expected the elements of the bodies in contact"
         )
     return faces
 
 
-def _check_not_line(nodal_result: NodalResult, loaded_nodes: NodeIndices) -> None:
+def _check_nodes_not_collinear(nodal_result: NodalResult, loaded_nodes: NodeIndices) -> None:
     """Raise ValueError if the contact nodes lie on a line, as in a two-dimensional model."""
-    offset = nodal_result.position[loaded_nodes] - nodal_result.position[loaded_nodes[0]]
+    offset = nodal_result.node_positions[loaded_nodes] - nodal_result.node_positions[loaded_nodes[0]]
     farthest = offset[np.argmax(np.sum(offset**2, axis=1))]
     size = float(np.linalg.norm(farthest))
     distance = np.linalg.norm(np.cross(offset, farthest), axis=1) if size else np.zeros(1)
-    if np.max(distance) <= PLANE_TOLERANCE * size**2:
+    if np.max(distance) <= PLANARITY_TOLERANCE * size**2:
         raise ValueError(
-            f"{nodal_result.path}: all nodes with pressure lie on one line, as in a two-dimensional or "
-            "axisymmetric model; give the result of a three-dimensional model"
+            f"{nodal_result.result_path}: all nodes with pressure lie on one line, as in a two-dimensional "
+            "or axisymmetric model; give the result of a three-dimensional model"
         )
 
 
 def _body_of_node(nodal_result: NodalResult) -> NDArray[np.int64]:
-    """Number of the body to which each node belongs; 0 if the result has no bodies."""
+    """Index of the body to which each node belongs; 0 if the result has no bodies."""
     return (
-        np.zeros(len(nodal_result.position), dtype=np.int64)
+        np.zeros(len(nodal_result.node_positions), dtype=np.int64)
         if nodal_result.body_of_node is None
         else nodal_result.body_of_node
     )
 
 
 def _select_bodies(
-    nodal_result: NodalResult, loaded_nodes: NodeIndices, node_height: Array, contact_plane: ContactPlane
+    nodal_result: NodalResult,
+    loaded_nodes: NodeIndices,
+    height_above_plane: Array,
+    contact_plane: ContactPlane,
 ) -> list[int]:
-    """Select the bodies with pressure by number; only those on `body_side` of the plane if a side is stated.
+    """Indices of the bodies with pressure; only those on `body_side` of the plane if a side is stated.
 
     A body lies above the plane if the mean height of its nodes is positive.
     """
@@ -204,18 +213,23 @@ def _select_bodies(
         return with_pressure
     sign = 1.0 if contact_plane.body_side == "above" else -1.0
     selected = [
-        number for number in with_pressure if sign * float(np.mean(node_height[body == number])) > 0.0
+        number for number in with_pressure if sign * float(np.mean(height_above_plane[body == number])) > 0.0
     ]
     if not selected:
-        raise ValueError(f"{nodal_result.path}: no body {contact_plane.body_side} the plane has a pressure")
+        raise ValueError(
+            f"{nodal_result.result_path}: no body {contact_plane.body_side} the plane has a pressure; state "
+            "the other side, or none"
+        )
     return selected
 
 
-def _drop_empty_midside_nodes(nodal_result: NodalResult, faces: Sequence[NodeIndices]) -> list[NodeIndices]:
+def _drop_empty_midside_nodes(
+    nodal_result: NodalResult, element_faces: Sequence[NodeIndices]
+) -> list[NodeIndices]:
     """Reduce quadratic faces to linear ones if no mid-side node has a value (some programs list corners)."""
-    has_value = np.isfinite(nodal_result.pressure)
-    midside = [block[:, FACE_CORNER_COUNTS[block.shape[1]] :].ravel() for block in faces]
+    has_value = np.isfinite(nodal_result.nodal_pressure)
+    midside = [block[:, FACE_CORNER_COUNTS[block.shape[1]] :].ravel() for block in element_faces]
     nodes = np.concatenate([*midside, np.empty(0, dtype=np.intp)])
     if nodes.size and not np.any(has_value[nodes]):
-        return [block[:, : FACE_CORNER_COUNTS[block.shape[1]]] for block in faces]
-    return list(faces)
+        return [block[:, : FACE_CORNER_COUNTS[block.shape[1]]] for block in element_faces]
+    return list(element_faces)

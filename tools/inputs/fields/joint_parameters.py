@@ -20,12 +20,12 @@ from jointfmu.quantity.refusal import InputRefusal
 
 from ...common import plots
 from .bolted_interface import BoltedInterface, check_pressure_field, nodal_pressures
-from .nodal_result import ContactField
-from .reduction import MAX_KEPT_NODES, Reduction, reduce_field
+from .nodal_result import ContactPressureField
+from .reduction import MAX_KEPT_NODES, FieldReduction, reduce_field
 
-FORCE_TOLERANCE = 0.01
+FIELD_FORCE_TOLERANCE = 0.01
 """Largest relative difference between the force of a pressure field and the total preload [1]."""
-PRESSURE_OVER_GIVEN_MOMENT_RANGE = (0.5, 1.5)
+FIELD_MOMENT_OVER_GIVEN_MOMENT_RANGE = (0.5, 1.5)
 """Allowed range of the moment of the pressure over the given moment [1]; bolt forces carry the rest."""
 _REPLACED_PARAMETER_PREFIXES = ("pattern.", "plate.", "field.", "bodies.", "sides")
 """Prefixes of the parameter names that a pressure field replaces.
@@ -33,16 +33,16 @@ _REPLACED_PARAMETER_PREFIXES = ("pattern.", "plate.", "field.", "bodies.", "side
 Elastic bodies are replaced too: they belong to another contact."""
 
 
-def insert_field(
+def insert_pressure_field(
     parameter_file: ParameterFile,
-    contact_field: ContactField,
+    contact_field: ContactPressureField,
     preload: float,
     field_source: str,
-    moment_field: ContactField | None = None,
-    moment: float | None = None,
+    moment_field: ContactPressureField | None = None,
+    bending_moment: float | None = None,
     bolt_positions: Array | None = None,
-    force_tolerance: float = FORCE_TOLERANCE,
-) -> tuple[ParameterFile, Reduction]:
+    force_tolerance: float = FIELD_FORCE_TOLERANCE,
+) -> tuple[ParameterFile, FieldReduction]:
     """Replace the pressure distribution and the contact area of a bolted joint by a computed field.
 
     Returns the new parameter file and the reduction of the field.
@@ -55,7 +55,7 @@ def insert_field(
     field_source    : origin of the field, written to the file
     moment_field    : field at the same nodes with an additional bending moment. None: the change of pressure
                       by a moment is in proportion to the distance from the centre of pressure
-    moment          : [N.m] of `moment_field`, positive if it increases the pressure at y > 0
+    bending_moment  : [N.m] of `moment_field`, positive if it increases the pressure at y > 0
     bolt_positions  : (n, 2) [m] positions of the bolts, for their bending stiffness; None: no bending
                       stiffness
     force_tolerance : [1] largest relative difference of the field's force from the bolt force, to which the
@@ -67,18 +67,21 @@ def insert_field(
     """
     check_pressure_field(parameter_file.joint)
     shape = normalise_pressure_field(
-        parameter_file.values, contact_field, preload, moment_field, moment, force_tolerance
+        parameter_file.values, contact_field, preload, moment_field, bending_moment, force_tolerance
     )
     reduction = reduce_field(
-        replace(parameter_file.values, A_0=float(np.sum(contact_field.area))), shape, preload, nodal_pressures
+        replace(parameter_file.values, A_0=float(np.sum(contact_field.nodal_area))),
+        shape,
+        preload,
+        nodal_pressures,
     )
     initial = reduction.reduced_distribution if shape.area_share.size > MAX_KEPT_NODES else None
     patches = reduce_patches(shape, MAX_PATCHES, initial)
     lists = encode_nodal_field(reduction.reduced_distribution) | encode_nodal_field(patches)
     new_values: dict[str, object] = {f"field.{name}": values for name, values in lists.items()}
-    new_values["A_0"] = float(np.sum(contact_field.area))
+    new_values["A_0"] = float(np.sum(contact_field.nodal_area))
     if bolt_positions is not None:
-        positions = bolt_positions - contact_field.centroid
+        positions = bolt_positions - contact_field.contact_centroid
         bolt_means = position_means(positions)
         new_values |= {
             f"field.{name}": value for name, value in zip(BOLT_POSITION_MEAN_NAMES, bolt_means, strict=True)
@@ -90,8 +93,8 @@ def insert_field(
         if not n.startswith(_REPLACED_PARAMETER_PREFIXES)
     }
     text = (
-        f"{field_source}, {preload:g} N per bolt; {reduction.point_count} points for "
-        f"{reduction.node_count} nodes"
+        f"{field_source}, {preload:g} N per bolt; {reduction.point_count} points for {reduction.node_count} "
+        "nodes"
     )
     return replace(
         parameter_file,
@@ -106,117 +109,145 @@ def insert_field(
         | dict.fromkeys(new_values, text)
         | {
             "A_0": f"{field_source}, sum of the nodal areas",
-            "field.tilt": f"{text}; {_describe_moment_rule(moment_field, moment)}",
+            "field.tilt": f"{text}; {_describe_moment_rule(moment_field, bending_moment)}",
         },
     ), reduction
 
 
-def _describe_moment_rule(moment_field: ContactField | None, moment: float | None) -> str:
-    """Describe how the pressure changes with a moment, for the source of the entry `field.tilt`."""
+def _describe_moment_rule(moment_field: ContactPressureField | None, bending_moment: float | None) -> str:
+    """Text that says where the change of the pressure with the bending moment comes from.
+
+    The text is part of the source of the entry `field.tilt`.
+    """
     if moment_field is None:
         return "in proportion to the distance from the centre of pressure"
-    return f"from the field at {moment:g} N.m"
+    return f"from the field at {bending_moment:g} N.m"
 
 
 def normalise_pressure_field(
-    joint: BoltedInterface,
-    contact_field: ContactField,
+    bolted_joint: BoltedInterface,
+    contact_field: ContactPressureField,
     preload: float,
-    moment_field: ContactField | None = None,
-    moment: float | None = None,
-    force_tolerance: float = FORCE_TOLERANCE,
+    moment_field: ContactPressureField | None = None,
+    bending_moment: float | None = None,
+    force_tolerance: float = FIELD_FORCE_TOLERANCE,
 ) -> PressureDistribution:
-    """Normalise a pressure field for a joint, at all its nodes. Parameters as for `insert_field`.
+    """Normalise a pressure field by the mean pressure of a joint. Parameters as for `insert_pressure_field`.
 
     With e = `preload_pressure_ratio` and t = `moment_pressure_ratio`, the pressure at a node is p_m e +
-    M/(L_a A_0) t: p_m bolt force over contact area, M moment, L_a distance of the bolt rows. Equilibrium
-    requires sum(share t y) = L_a. Without a second field, t = L_a e (y - y_p)/sum(share e (y - y_p)^2); y_p
-    is the centre of pressure.
+    M/(L_a A_0) t: p_m bolt force over contact area A_0, M bending moment, L_a distance of the bolt rows.
+    Equilibrium requires sum(a t y) = L_a, with coordinate y of a node and its share a of the contact area.
+    Without a second field, t = L_a e (y - y_p)/sum(a e (y - y_p)^2); y_p is the centre of pressure.
     """
-    scale = _bolt_force_ratio(joint, contact_field, preload, "the field", force_tolerance)
-    area = float(np.sum(contact_field.area))
-    share, position = contact_field.area / area, contact_field.position - contact_field.centroid
-    mean = preload * joint.n_bolts / area
-    equal = scale * contact_field.pressure / mean
+    scale = _bolt_force_ratio(bolted_joint, contact_field, preload, "the field", force_tolerance)
+    area = float(np.sum(contact_field.nodal_area))
+    share, position = (
+        contact_field.nodal_area / area,
+        contact_field.node_positions - contact_field.contact_centroid,
+    )
+    mean = preload * bolted_joint.n_bolts / area
+    equal = scale * contact_field.nodal_pressure / mean
     if moment_field is None:
-        tilt = joint.row_distance * moment_pressure(share, position[:, 1], equal)
+        tilt = bolted_joint.row_distance * moment_pressure(share, position[:, 1], equal)
         return PressureDistribution(share, position, equal, tilt)
-    if moment is None or not np.isfinite(moment) or moment == 0.0:
-        raise ValueError(f"moment = {moment} N.m is outside (-inf, 0) and (0, inf): of the second field")
-    scale = _bolt_force_ratio(joint, moment_field, preload, "the field with a moment", force_tolerance)
-    _check_same_nodes(contact_field, moment_field)
-    added = scale * moment_field.pressure - mean * equal
-    moment_ratio = area * float(share @ (added * position[:, 1])) / moment
-    if not PRESSURE_OVER_GIVEN_MOMENT_RANGE[0] <= moment_ratio <= PRESSURE_OVER_GIVEN_MOMENT_RANGE[1]:
-        low, high = PRESSURE_OVER_GIVEN_MOMENT_RANGE
+    if bending_moment is None:
+        raise ValueError("the moment [N.m] of the second field is missing; state it")
+    if not np.isfinite(bending_moment) or bending_moment == 0.0:
         raise ValueError(
-            f"the pressures of the second field balance {moment_ratio:.3g} of the moment of {moment:g} N.m, "
-            f"allowed is {low:g} to {high:g}: check the sign: a positive moment raises the pressure at y > 0"
+            f"moment = {bending_moment:g} N.m of the second field is outside (-inf, 0) and (0, inf)"
         )
-    return PressureDistribution(share, position, equal, added * joint.row_distance * area / moment)
+    scale = _bolt_force_ratio(bolted_joint, moment_field, preload, "the field with a moment", force_tolerance)
+    _check_same_nodes(contact_field, moment_field)
+    added = scale * moment_field.nodal_pressure - mean * equal
+    field_over_given_moment = area * float(share @ (added * position[:, 1])) / bending_moment
+    if (
+        not FIELD_MOMENT_OVER_GIVEN_MOMENT_RANGE[0]
+        <= field_over_given_moment
+        <= FIELD_MOMENT_OVER_GIVEN_MOMENT_RANGE[1]
+    ):
+        low, high = FIELD_MOMENT_OVER_GIVEN_MOMENT_RANGE
+        raise ValueError(
+            f"the pressures of the second field balance {field_over_given_moment:.3g} times its moment of "
+            f"{bending_moment:g} N.m, allowed is {low:g} to {high:g}; check value and sign: a positive "
+            "moment raises the pressure at y > 0"
+        )
+    return PressureDistribution(
+        share, position, equal, added * bolted_joint.row_distance * area / bending_moment
+    )
 
 
 def _bolt_force_ratio(
-    joint: BoltedInterface,
-    contact_field: ContactField,
+    bolted_joint: BoltedInterface,
+    contact_field: ContactPressureField,
     preload: float,
-    field_name: str,
+    field_description: str,
     force_tolerance: float,
 ) -> float:
-    """Total bolt force over the contact force of a pressure field [1]; InputRefusal if it is not near 1."""
+    """Ratio [1] of total bolt force to the force of a pressure field; InputRefusal if it is not near 1."""
     if not 0.0 < force_tolerance < 1.0:
-        raise InputRefusal(f"force_tolerance = {force_tolerance:g} is outside (0, 1)", "force_tolerance")
-    if not 0.0 < preload < np.inf:
-        raise ValueError(f"preload = {preload:g} N is outside (0, inf)")
-    expected = preload * joint.n_bolts
-    if not abs(contact_field.force / expected - 1.0) <= force_tolerance:
         raise InputRefusal(
-            f"the force of {field_name} is {contact_field.force:.6g} N, expected {expected:.6g} N within "
-            f"{100.0 * force_tolerance:.3g} %: {joint.n_bolts:g} bolts of {preload:g} N; with a larger "
-            "tolerance the field is scaled to the bolt force",
+            f"force_tolerance = {force_tolerance:g} is outside (0, 1): relative difference of the forces",
             "force_tolerance",
         )
-    return expected / contact_field.force
-
-
-def _check_same_nodes(contact_field: ContactField, moment_field: ContactField) -> None:
-    """Raise ValueError, which names the first difference, if two pressure fields have different nodes."""
-    if contact_field.area.size != moment_field.area.size:
-        raise ValueError(
-            f"the field with a moment has {moment_field.area.size} nodes, "
-            f"expected those of the first: {contact_field.area.size}"
+    if not 0.0 < preload < np.inf:
+        raise ValueError(f"preload = {preload:g} N is outside (0, inf): preload of each bolt")
+    expected = preload * bolted_joint.n_bolts
+    if not abs(contact_field.normal_force / expected - 1.0) <= force_tolerance:
+        raise InputRefusal(
+            f"the force of {field_description} is {contact_field.normal_force:.6g} N, expected "
+            f"{expected:.6g} N within {100.0 * force_tolerance:.3g} %: {bolted_joint.n_bolts:g} bolts of "
+            f"{preload:g} N; with a larger tolerance the field is scaled to the bolt force",
+            "force_tolerance",
         )
-    size = float(np.ptp(contact_field.position, axis=0).max())
-    differs = np.max(np.abs(moment_field.position - contact_field.position), axis=1) > 1e-6 * size
-    differs |= np.abs(moment_field.area - contact_field.area) > 1e-6 * np.max(contact_field.area)
+    return expected / contact_field.normal_force
+
+
+def _check_same_nodes(contact_field: ContactPressureField, moment_field: ContactPressureField) -> None:
+    """Raise ValueError, which names the first difference, if two pressure fields have different nodes."""
+    if contact_field.nodal_area.size != moment_field.nodal_area.size:
+        raise ValueError(
+            f"the field with a moment has {moment_field.nodal_area.size} nodes, expected those of the "
+            f"first: {contact_field.nodal_area.size}"
+        )
+    size = float(np.ptp(contact_field.node_positions, axis=0).max())
+    differs = np.max(np.abs(moment_field.node_positions - contact_field.node_positions), axis=1) > 1e-6 * size
+    differs |= np.abs(moment_field.nodal_area - contact_field.nodal_area) > 1e-6 * np.max(
+        contact_field.nodal_area
+    )
     if np.any(differs):
         i = int(np.argmax(differs))
         raise ValueError(
-            f"node {i + 1} of the field with a moment is at {moment_field.position[i].tolist()} m with "
-            f"{moment_field.area[i]:g} m2, expected {contact_field.position[i].tolist()} m with "
-            f"{contact_field.area[i]:g} m2"
+            f"node {i + 1} of the field with a moment is at {moment_field.node_positions[i].tolist()} m "
+            f"with {moment_field.nodal_area[i]:g} m2, expected {contact_field.node_positions[i].tolist()} m "
+            f"with {contact_field.nodal_area[i]:g} m2"
         )
 
 
-def draw_field(contact_field: ContactField, reduction: Reduction, path: str | Path) -> None:
-    """Plot the pressure at all nodes next to the pressure at the reduced points, as .png or .svg."""
-    position = 1e3 * (contact_field.position - contact_field.centroid)
+def draw_pressure_field(
+    contact_field: ContactPressureField, field_reduction: FieldReduction, picture_path: str | Path
+) -> None:
+    """Plot the pressure at all nodes, and at the few points that replace them, as .png or .svg."""
+    position = 1e3 * (contact_field.node_positions - contact_field.contact_centroid)
     width, height = np.ptp(position, axis=0)
-    with plots.open_figure(path, (10.4, float(np.clip(4.6 * height / width, 3.0, 7.0)))) as figure:
+    with plots.open_figure(picture_path, (10.4, float(np.clip(4.6 * height / width, 3.0, 7.0)))) as figure:
         left, right = figure.subplots(1, 2, sharex=True, sharey=True)
         size = (
             20.0
-            * contact_field.area
-            / np.max(contact_field.area)
-            * min(1.0, 3000.0 / contact_field.area.size)
+            * contact_field.nodal_area
+            / np.max(contact_field.nodal_area)
+            * min(1.0, 3000.0 / contact_field.nodal_area.size)
         )
-        nodes = left.scatter(*position.T, c=1e-6 * contact_field.pressure, s=size, cmap="viridis", lw=0.0)
+        nodes = left.scatter(
+            *position.T, c=1e-6 * contact_field.nodal_pressure, s=size, cmap="viridis", lw=0.0
+        )
         figure.colorbar(nodes, ax=left, label="pressure [MPa]", shrink=0.85)
         left.set_title(
-            f"{contact_field.area.size} nodes, {contact_field.force / 1e3:.4g} kN", loc="left", fontsize=10
+            f"{contact_field.nodal_area.size} nodes, {contact_field.normal_force / 1e3:.4g} kN",
+            loc="left",
+            fontsize=10,
         )
-        shape = reduction.reduced_distribution
-        mean = contact_field.force / float(np.sum(contact_field.area))
+        shape = field_reduction.reduced_distribution
+        mean = contact_field.normal_force / float(np.sum(contact_field.nodal_area))
         points = right.scatter(
             *(1e3 * shape.position.T),
             c=1e-6 * mean * shape.preload_pressure_ratio,
@@ -226,7 +257,7 @@ def draw_field(contact_field: ContactField, reduction: Reduction, path: str | Pa
         )
         figure.colorbar(points, ax=right, label="pressure [MPa]", shrink=0.85)
         right.set_title(
-            f"{reduction.point_count} points, by their share of the area", loc="left", fontsize=10
+            f"{field_reduction.point_count} points, by their share of the area", loc="left", fontsize=10
         )
         left.set_ylabel("y, across the bolt rows [mm]")
         for axes in (left, right):

@@ -22,17 +22,17 @@ from jointfmu.mechanics.footprint.reproducible import round_distribution, round_
 from jointfmu.progress import track_progress
 from jointfmu.quantity import Array
 
-from .bolted_interface import BoltedInterface, PressureFunction
+from .bolted_interface import BoltedInterface, NodalPressureFunction
 from .nodal_result import NodeIndices
 from .sums import (
-    CASE_OVER_FIELD_PRELOAD_RANGE,
-    RANDOM_SEED,
+    LOAD_CASE_SEED,
+    PRELOAD_OVER_FIELD_PRELOAD_RANGE,
+    ForceAndStiffnessFunctions,
+    ForceAndStiffnessSums,
     LoadCase,
-    LoadCaseSums,
-    SumFunctions,
     evaluate_equilibrium_functions,
+    find_max_moment_over_unloading_moment,
     initial_load_cases,
-    max_moment_ratio,
     nodes_per_group,
     random_load_cases,
 )
@@ -44,10 +44,12 @@ NODE_GROUPS_PER_INDEPENDENT_SUM = 2
 def recombine_weights(
     function_values: Array, node_weights: Array, orthogonal_transform: Array
 ) -> tuple[NodeIndices, Array]:
-    """Select at most d nodes with new weights that keep the weighted sums of d functions (recombination).
+    """Select at most d of n nodes with new weights that keep the weighted sums of d functions.
 
-    function_values      : (n, d) of the functions at the nodes
-    node_weights         : (n) > 0
+    This is the recombination of a quadrature rule to fewer nodes.
+
+    function_values      : (n, d) values of the functions at the nodes
+    node_weights         : (n) old weights of the nodes > 0
     orthogonal_transform : (d, d) matrix that makes the d functions independent
 
     Returns the indices of the nodes and their weights. Raises RuntimeError if round-off prevents a solution.
@@ -68,9 +70,9 @@ def recombine_weights(
     return selected, node_weights
 
 
-RELATIVE_TOLERANCE = 1e-6
+REDUCTION_TOLERANCE = 1e-6
 """Largest relative deviation of a sum [1] of a reduced field."""
-LARGE_FIELD_TOLERANCE = 1e-5
+LARGE_FIELD_REDUCTION_TOLERANCE = 1e-5
 """Largest relative deviation of a sum [1] of a reduced field with more than MAX_KEPT_NODES nodes."""
 TARGET_DEVIATION_OVER_TOLERANCE, ACCEPTED_DEVIATION_OVER_TOLERANCE, ADDED_CASE_DEVIATION_OVER_TOLERANCE = (
     0.05,
@@ -79,15 +81,15 @@ TARGET_DEVIATION_OVER_TOLERANCE, ACCEPTED_DEVIATION_OVER_TOLERANCE, ADDED_CASE_D
 )
 """Deviations over the tolerance [1]: goal in the load cases of the selection; limit in the test load cases
 (the margin is for untested ones); deviation from which a test load case is added to the selection."""
-ROUNDING_BITS = 25
+NODE_ROUNDING_BITS = 25
 """Number of bits to which nodes are rounded for the selection [1]: 3e-8, less than the tolerance."""
 MIN_OVER_MAX_PIVOT = 7e-9
 """Smallest pivot of an independent sum over the largest pivot [1]; sums with smaller pivots are dependent."""
-SUM_COUNT_OVER_PREVIOUS_COUNT = 0.93
+KEPT_SUM_COUNT_OVER_PREVIOUS_COUNT = 0.93
 """Number of kept sums, and so of points, in one attempt over that in the attempt before [1]."""
 INITIAL_RANDOM_LOAD_CASES = 100
 """Number of quasi-random load cases in the first selection [1]."""
-SKETCH_ROWS = 600
+SKETCH_MATRIX_ROWS = 600
 """Number of random combinations of the sample nodes (Halko, Martinsson and Tropp 2011); more than the number
 of kept sums."""
 MAX_UNREDUCED_NODES = 60
@@ -96,39 +98,40 @@ MAX_KEPT_NODES = 3000
 """Largest number of nodes that are all kept if no reduction meets the tolerance."""
 SAMPLE_NODE_COUNT = 3000
 """Number of sample nodes for finding the independent sums."""
-TEST_LOAD_RANGE, MAX_TEST_EVALUATIONS = (60, 300), 3e6
+TEST_LOAD_CASE_COUNT_RANGE, MAX_TEST_EVALUATIONS = (60, 300), 3e6
 """Smallest and largest number of test load cases per round; largest number of test load cases times nodes."""
 MAX_SELECTION_ROUNDS = 8
 """Largest number of rounds that select points, test them and add load cases [1]."""
 
 
 @dataclass(frozen=True, slots=True)
-class Reduction:
-    """Result of the reduction of a pressure field.
+class FieldReduction:
+    """Pressure field of a contact at all nodes, the few nodes (points) that replace them, and their error.
 
-    reduced_distribution : normalised pressure at the reduced points
-    full_distribution : normalised pressure at all nodes
-    largest_deviation : [1] largest deviation of the sums in `test_case_count` load cases outside the
-        selection: total force, K_zz (and K_xx, proportional to K_zz), K_rx and K_ry, each over its value or
-        its value in the preloaded joint, whichever is larger. Deviations of the moments of the force and of
-        coupling stiffnesses count a hundredth
-    test_case_count : number of these load cases
-    max_tested_moment_ratio : [1] largest moment in these load cases over the moment that unloads a row of
-        bolts
-    deviation_above_tested_moments : [1] largest deviation at moment ratios from `max_tested_moment_ratio` to
-        1
+    reduced_distribution : normalised pressure at the points
+    full_distribution    : normalised pressure at all nodes
+    largest_deviation    : [1] largest error of the points in load cases that did not select them: normal
+                           force, normal stiffness K_zz (and K_xx, proportional to it) and rotational
+                           stiffnesses K_rx, K_ry, each over its value or its value in the preloaded joint,
+                           whichever is larger. Errors of the moments of the force and of coupling
+                           stiffnesses count a hundredth
+    test_case_count      : number of these load cases
+    max_tested_over_unloading_moment : [1] largest moment in these load cases over the moment that unloads a
+                                       row of bolts
+    deviation_above_tested_moments   : [1] largest error at moments from there to the moment that unloads a
+                                       row of bolts
     """
 
     reduced_distribution: PressureDistribution
     full_distribution: PressureDistribution
     largest_deviation: float = 0.0
     test_case_count: int = 0
-    max_tested_moment_ratio: float = 1.0
+    max_tested_over_unloading_moment: float = 1.0
     deviation_above_tested_moments: float = 0.0
 
     @property
     def point_count(self) -> int:
-        """Number of reduced points."""
+        """Number of points that replace the nodes of the field."""
         return int(self.reduced_distribution.area_share.size)
 
     @property
@@ -138,170 +141,189 @@ class Reduction:
 
 
 def reduce_field(
-    joint: BoltedInterface,
+    bolted_joint: BoltedInterface,
     normalised_pressure: PressureDistribution,
     preload: float,
-    nodal_pressures: PressureFunction,
-) -> Reduction:
-    """Reduce a pressure distribution to the fewest nodes that keep its sums within RELATIVE_TOLERANCE.
+    nodal_pressure_function: NodalPressureFunction,
+) -> FieldReduction:
+    """Reduce a pressure distribution to few nodes with the same force, moments and stiffness of the joint.
 
-    If no selection of nodes meets this tolerance, all nodes are kept. For a field with more than
-    MAX_KEPT_NODES nodes, a selection within LARGE_FIELD_TOLERANCE is enough.
+    Force, moments and stiffness are sums over the nodes. They are kept within REDUCTION_TOLERANCE. If no
+    selection of nodes meets this tolerance, all nodes are kept. For a field with more than MAX_KEPT_NODES
+    nodes, LARGE_FIELD_REDUCTION_TOLERANCE is enough.
 
-    preload         : [N] per bolt of the field. Load cases cover CASE_OVER_FIELD_PRELOAD_RANGE of it, from
-                      compression to full opening, with moments up to `max_moment_ratio`
-    nodal_pressures : function of the joint for nodal pressures, see `bolted_interface.nodal_pressures`
+    preload                 : [N] per bolt of the field. Load cases have PRELOAD_OVER_FIELD_PRELOAD_RANGE
+                              times this preload, from compression to full opening, and moments up to
+                              `find_max_moment_over_unloading_moment`
+    nodal_pressure_function : function of the joint for nodal pressures, see
+                              `bolted_interface.nodal_pressures`
 
-    Raises RuntimeError if the field has too many nodes and no points are within LARGE_FIELD_TOLERANCE.
+    Raises RuntimeError if the field has too many nodes, and no points are within
+    LARGE_FIELD_REDUCTION_TOLERANCE.
     """
     nodes = normalised_pressure.area_share.size
     if nodes <= MAX_UNREDUCED_NODES:
-        return Reduction(normalised_pressure, normalised_pressure)
-    sums = SumFunctions.from_joint(joint, preload, nodal_pressures)
+        return FieldReduction(normalised_pressure, normalised_pressure)
+    sums = ForceAndStiffnessFunctions.from_joint(bolted_joint, preload, nodal_pressure_function)
     # sorted by pressure, neighbouring nodes are close on the pressure curve: its evaluation is faster
     order = np.argsort(round_to_digits(normalised_pressure.preload_pressure_ratio), kind="stable")
     unrounded = normalised_pressure.select_nodes(order)
-    normalised_pressure = round_distribution(unrounded, ROUNDING_BITS)
-    sample = np.random.default_rng(RANDOM_SEED).choice(
+    normalised_pressure = round_distribution(unrounded, NODE_ROUNDING_BITS)
+    sample = np.random.default_rng(LOAD_CASE_SEED).choice(
         nodes,
         min(SAMPLE_NODE_COUNT, nodes),
         replace=False,
-        p=sums.sample_probability(normalised_pressure, max_moment_ratio(joint, normalised_pressure)),
+        p=sums.compute_sampling_probability(
+            normalised_pressure, find_max_moment_over_unloading_moment(bolted_joint, normalised_pressure)
+        ),
     )
-    reduction = _search_points(sums, normalised_pressure, normalised_pressure.select_nodes(sample), unrounded)
+    reduction = _search_reduced_points(
+        sums, normalised_pressure, normalised_pressure.select_nodes(sample), unrounded
+    )
     if reduction is not None and (
-        nodes > MAX_KEPT_NODES or reduction.largest_deviation <= RELATIVE_TOLERANCE
+        nodes > MAX_KEPT_NODES or reduction.largest_deviation <= REDUCTION_TOLERANCE
     ):
         return reduction
     if nodes <= MAX_KEPT_NODES:
-        return Reduction(unrounded, unrounded)
+        return FieldReduction(unrounded, unrounded)
     raise RuntimeError(
-        f"the field of {nodes} nodes cannot be reduced to points that keep its sums within "
-        f"{LARGE_FIELD_TOLERANCE:g}; of up to {MAX_KEPT_NODES} all nodes are kept"
+        f"the field of {nodes} nodes cannot be reduced: no set of points keeps its sums within "
+        f"{LARGE_FIELD_REDUCTION_TOLERANCE:g}; give a field of at most {MAX_KEPT_NODES} nodes, which are all "
+        "kept"
     )
 
 
-def _search_points(
-    sum_functions: SumFunctions,
+def _search_reduced_points(
+    sum_functions: ForceAndStiffnessFunctions,
     rounded_distribution: PressureDistribution,
     sample_distribution: PressureDistribution,
     unrounded_distribution: PressureDistribution,
-) -> Reduction | None:
-    """Search points that keep the sums within LARGE_FIELD_TOLERANCE; None if there are none.
+) -> FieldReduction | None:
+    """Search few nodes (points) that replace all nodes of a pressure field; None if there are none.
 
-    Each round tests the points in new load cases. Load cases in which the points miss the tolerance are added
-    to those of the selection.
+    With the points, force, moments and stiffness of the joint keep their values within
+    LARGE_FIELD_REDUCTION_TOLERANCE. Each round selects points by some load cases, and tests them in new ones.
+    Load cases in which the points miss the tolerance are added to those of the selection.
 
     rounded_distribution   : normalised pressure at all nodes, rounded
     sample_distribution    : sample of these nodes, for finding the independent sums
     unrounded_distribution : normalised pressure at all nodes
     """
-    limit = max_moment_ratio(sum_functions.joint, rounded_distribution)
+    limit = find_max_moment_over_unloading_moment(sum_functions.bolted_joint, rounded_distribution)
     loads = random_load_cases(limit)
-    tests = int(np.clip(MAX_TEST_EVALUATIONS / rounded_distribution.area_share.size, *TEST_LOAD_RANGE))
-    system = _SumSystem.from_load_case_sums(
+    tests = int(
+        np.clip(MAX_TEST_EVALUATIONS / rounded_distribution.area_share.size, *TEST_LOAD_CASE_COUNT_RANGE)
+    )
+    system = _PreservedSums.from_load_case_sums(
         sum_functions,
         rounded_distribution,
         unrounded_distribution,
         sample_distribution,
-        sum_functions.compute_sums(
+        sum_functions.compute_load_case_sums(
             rounded_distribution, [*initial_load_cases(limit), *islice(loads, INITIAL_RANDOM_LOAD_CASES)]
         ),
     )
-    best, best_deviation = None, LARGE_FIELD_TOLERANCE
+    best, best_deviation = None, LARGE_FIELD_REDUCTION_TOLERANCE
     for _ in track_progress(range(MAX_SELECTION_ROUNDS), "points", MAX_SELECTION_ROUNDS):
-        points = system.find_points()
+        points = system.find_reduced_points()
         if points is None:
             break
-        test_sums = sum_functions.compute_sums(rounded_distribution, list(islice(loads, tests)))
-        deviations = sum_functions.sum_deviations(points, test_sums)
+        test_sums = sum_functions.compute_load_case_sums(rounded_distribution, list(islice(loads, tests)))
+        deviations = sum_functions.compute_sum_deviations(points, test_sums)
         worst = float(np.max(deviations))
         if worst <= best_deviation:
             best, best_deviation = points, worst
-        if worst <= ACCEPTED_DEVIATION_OVER_TOLERANCE * RELATIVE_TOLERANCE:
+        if worst <= ACCEPTED_DEVIATION_OVER_TOLERANCE * REDUCTION_TOLERANCE:
             break
         system.add_load_cases(
-            test_sums.select_load_cases(deviations > ADDED_CASE_DEVIATION_OVER_TOLERANCE * RELATIVE_TOLERANCE)
+            test_sums.select_load_cases(
+                deviations > ADDED_CASE_DEVIATION_OVER_TOLERANCE * REDUCTION_TOLERANCE
+            )
         )
     if best is None:
         return None
     deviation_beyond = _deviation_above_tested_moments(sum_functions, rounded_distribution, best, limit)
-    return Reduction(best, unrounded_distribution, best_deviation, tests, limit, deviation_beyond)
+    return FieldReduction(best, unrounded_distribution, best_deviation, tests, limit, deviation_beyond)
 
 
 def _deviation_above_tested_moments(
-    sum_functions: SumFunctions,
+    sum_functions: ForceAndStiffnessFunctions,
     normalised_pressure: PressureDistribution,
     reduced_points: PressureDistribution,
-    min_over_max_moment: float,
+    min_over_unloading_moment: float,
 ) -> float:
-    """Largest deviation [1] of the sums of reduced points at moments above the tested ones.
+    """Largest error [1] of few points, in force, moments and stiffness, at large bending moments.
 
-    The moments go up to the moment at which a row of bolts loses its force.
+    The largest moment is that at which a row of bolts loses its force.
 
-    min_over_max_moment : smallest of these moments over the largest one [1]
+    normalised_pressure       : pressure at all nodes
+    reduced_points            : pressure at the points that replace the nodes
+    min_over_unloading_moment : smallest moment over the largest moment [1]
     """
-    if min_over_max_moment >= 1.0:
+    if min_over_unloading_moment >= 1.0:
         return 0.0
-    moments = np.linspace(min_over_max_moment, 1.0, 6)[1:].tolist()
+    moments = np.linspace(min_over_unloading_moment, 1.0, 6)[1:].tolist()
     loads = [
         LoadCase(p, sign * m, 0.0)
-        for p in CASE_OVER_FIELD_PRELOAD_RANGE
+        for p in PRELOAD_OVER_FIELD_PRELOAD_RANGE
         for m in moments
         for sign in (-1.0, 1.0)
     ]
     return float(
         np.max(
-            sum_functions.sum_deviations(
-                reduced_points, sum_functions.compute_sums(normalised_pressure, loads)
+            sum_functions.compute_sum_deviations(
+                reduced_points, sum_functions.compute_load_case_sums(normalised_pressure, loads)
             )
         )
     )
 
 
 @dataclass(slots=True)
-class _SumSystem:
-    """The r sums that the reduced points must keep: area, force and moments, and sums in load cases.
+class _PreservedSums:
+    """The r sums over all nodes that the few selected nodes must reproduce.
+
+    The sums are area, centroid, force and moments of the field, and force, stiffness and their moments in
+    load cases.
 
     rounded_distribution   : normalised pressure at all nodes, rounded
     unrounded_distribution : normalised pressure at all nodes
-    sample_distribution    : sample (c) of the nodes, for finding the independent sums
-    mixing_matrix          : random matrix (SKETCH_ROWS, c)
-    load_case_sums         : sums in the load cases
+    sample_distribution    : normalised pressure at a sample of c nodes, for finding the independent sums
+    mixing_matrix          : random matrix (SKETCH_MATRIX_ROWS, c)
+    load_case_sums         : force, stiffness and their moments in the load cases
     equilibrium_scale      : divisors of the functions of `evaluate_equilibrium_functions`
-    sketch_matrix          : (SKETCH_ROWS, r) random combinations of the functions at the sample nodes
+    sketch_matrix          : (SKETCH_MATRIX_ROWS, r) random combinations of the functions at the sample nodes
     """
 
-    sum_functions: SumFunctions
+    sum_functions: ForceAndStiffnessFunctions
     rounded_distribution: PressureDistribution
     unrounded_distribution: PressureDistribution
     sample_distribution: PressureDistribution
     mixing_matrix: Array
-    load_case_sums: LoadCaseSums
+    load_case_sums: ForceAndStiffnessSums
     equilibrium_scale: Array
     sketch_matrix: Array
 
     @classmethod
     def from_load_case_sums(
         cls,
-        sum_functions: SumFunctions,
+        sum_functions: ForceAndStiffnessFunctions,
         rounded_distribution: PressureDistribution,
         unrounded_distribution: PressureDistribution,
         sample_distribution: PressureDistribution,
-        load_case_sums: LoadCaseSums,
-    ) -> "_SumSystem":
-        """System of sums for area, force and moments, and of the sums in initial load cases."""
+        load_case_sums: ForceAndStiffnessSums,
+    ) -> "_PreservedSums":
+        """Collect the sums that the selected nodes must reproduce, in the load cases at the start."""
         scale = np.maximum(
             np.max(np.abs(evaluate_equilibrium_functions(rounded_distribution)), axis=0), np.finfo(float).tiny
         )
-        mixing = np.random.default_rng(RANDOM_SEED).standard_normal(
-            (SKETCH_ROWS, sample_distribution.area_share.size)
+        mixing = np.random.default_rng(LOAD_CASE_SEED).standard_normal(
+            (SKETCH_MATRIX_ROWS, sample_distribution.area_share.size)
         )
-        mixing *= np.sqrt(sample_distribution.area_share / SKETCH_ROWS)
+        mixing *= np.sqrt(sample_distribution.area_share / SKETCH_MATRIX_ROWS)
         sketch = mixing @ np.concatenate(
             [
                 evaluate_equilibrium_functions(sample_distribution) / scale,
-                sum_functions.function_values(sample_distribution, load_case_sums),
+                sum_functions.evaluate_functions(sample_distribution, load_case_sums),
             ],
             axis=1,
         )
@@ -316,42 +338,44 @@ class _SumSystem:
             sketch,
         )
 
-    def add_load_cases(self, load_case_sums: LoadCaseSums) -> None:
-        """Add the sums in more load cases."""
+    def add_load_cases(self, load_case_sums: ForceAndStiffnessSums) -> None:
+        """Add force, stiffness and their moments in further load cases to the sums to be reproduced."""
         self.sketch_matrix = np.concatenate(
             [
                 self.sketch_matrix,
                 self.mixing_matrix
-                @ self.sum_functions.function_values(self.sample_distribution, load_case_sums),
+                @ self.sum_functions.evaluate_functions(self.sample_distribution, load_case_sums),
             ],
             axis=1,
         )
-        self.load_case_sums = self.load_case_sums.concatenate(load_case_sums)
+        self.load_case_sums = self.load_case_sums.append_load_cases(load_case_sums)
 
-    def function_values(self, normalised_pressure: PressureDistribution) -> Array:
-        """Values (n, r) of all r functions at the n nodes of a pressure distribution."""
+    def evaluate_functions(self, normalised_pressure: PressureDistribution) -> Array:
+        """Values at n nodes of the r functions whose sums over the nodes must be reproduced: array (n, r)."""
         return np.concatenate(
             [
                 evaluate_equilibrium_functions(normalised_pressure) / self.equilibrium_scale,
-                self.sum_functions.function_values(normalised_pressure, self.load_case_sums),
+                self.sum_functions.evaluate_functions(normalised_pressure, self.load_case_sums),
             ],
             axis=1,
         )
 
-    def find_points(self) -> PressureDistribution | None:
-        """Find the fewest nodes and area shares that reproduce the sums of all load cases; None if none do.
+    def find_reduced_points(self) -> PressureDistribution | None:
+        """Find few nodes with new area shares that reproduce the sums over all nodes; None if none do.
 
         The nodes with the highest pressure (`find_peak_nodes`) always stay, with the share of their own area.
         """
-        independent, turn = self._independent_sums()
+        independent, turn = self._find_independent_sums()
         fixed = find_peak_nodes(self.rounded_distribution)
         try:
-            candidates, share = self._select_groups(independent, turn, fixed)
-            selected, share = recombine_weights(self._selected_values(candidates, independent), share, turn)
+            candidates, share = self._select_node_groups(independent, turn, fixed)
+            selected, share = recombine_weights(
+                self._evaluate_selected_functions(candidates, independent), share, turn
+            )
         except RuntimeError:  # round-off
             return None
         selected = candidates[selected]
-        values = self.function_values(self.rounded_distribution.select_nodes(selected))
+        values = self.evaluate_functions(self.rounded_distribution.select_nodes(selected))
         target = np.concatenate(
             [
                 self.rounded_distribution.area_share
@@ -360,14 +384,14 @@ class _SumSystem:
                 self.load_case_sums.total_sums.ravel(),
             ]
         )
-        target -= self.rounded_distribution.area_share[fixed] @ self.function_values(
+        target -= self.rounded_distribution.area_share[fixed] @ self.evaluate_functions(
             self.rounded_distribution.select_nodes(fixed)
         )
         best, count = None, independent.size
-        tolerance = ACCEPTED_DEVIATION_OVER_TOLERANCE * LARGE_FIELD_TOLERANCE
+        tolerance = ACCEPTED_DEVIATION_OVER_TOLERANCE * LARGE_FIELD_REDUCTION_TOLERANCE
         while count > 1 and np.max(np.abs(share @ values - target)) <= tolerance:
-            best, tolerance = (selected, share), TARGET_DEVIATION_OVER_TOLERANCE * RELATIVE_TOLERANCE
-            count = int(SUM_COUNT_OVER_PREVIOUS_COUNT * count)
+            best, tolerance = (selected, share), TARGET_DEVIATION_OVER_TOLERANCE * REDUCTION_TOLERANCE
+            count = int(KEPT_SUM_COUNT_OVER_PREVIOUS_COUNT * count)
             try:
                 fewer, share = recombine_weights(values[:, independent[:count]], share, turn[:count, :count])
             except RuntimeError:
@@ -380,12 +404,12 @@ class _SumSystem:
             points, np.concatenate([self.rounded_distribution.area_share[fixed], best[1]])
         )
 
-    def _select_groups(
+    def _select_node_groups(
         self, function_indices: NodeIndices, orthogonal_transform: Array, fixed_nodes: NodeIndices
     ) -> tuple[NodeIndices, Array]:
-        """Select few groups of nodes, with shares that keep the sums of all nodes except the fixed ones.
+        """Select few groups of nodes with new area shares that keep the sums over all but `fixed_nodes`.
 
-        Returns the nodes of these groups and their shares.
+        Returns the nodes of these groups and their area shares.
         """
         share = self.rounded_distribution.area_share.copy()
         share[fixed_nodes] = 0.0
@@ -397,7 +421,7 @@ class _SumSystem:
             sums,
             group[fixed_nodes],
             self.rounded_distribution.area_share[fixed_nodes, None]
-            * self._selected_values(fixed_nodes, function_indices),
+            * self._evaluate_selected_functions(fixed_nodes, function_indices),
         )
         selected, new_share = recombine_weights(
             sums[nonempty] / old_share[nonempty, None], old_share[nonempty], orthogonal_transform
@@ -409,7 +433,7 @@ class _SumSystem:
         return nodes, share[nodes]
 
     def _sum_over_groups(self, function_indices: NodeIndices) -> Array:
-        """Sums (g, k) of k selected functions over each of g groups of nodes."""
+        """Sums (g, k) of k functions of pressure and position over the nodes of each of g groups."""
         share, count = self.rounded_distribution.area_share[:, None], self.equilibrium_scale.size
         is_balance = function_indices < count
         load, function = np.divmod(function_indices[~is_balance] - count, 9)
@@ -423,21 +447,24 @@ class _SumSystem:
         out[:, ~is_balance] = self.load_case_sums.group_sums[load, function].T
         return out
 
-    def _selected_values(self, node_indices: NodeIndices, function_indices: NodeIndices) -> Array:
-        """Values (n, k) of k selected functions at n nodes."""
+    def _evaluate_selected_functions(self, node_indices: NodeIndices, function_indices: NodeIndices) -> Array:
+        """Values (n, k) at n nodes of k of the functions whose sums over the nodes must be kept."""
         shape, count = self.rounded_distribution.select_nodes(node_indices), self.equilibrium_scale.size
         is_balance = function_indices < count
         out = np.empty((node_indices.size, function_indices.size))
         out[:, is_balance] = (evaluate_equilibrium_functions(shape) / self.equilibrium_scale)[
             :, function_indices[is_balance]
         ]
-        out[:, ~is_balance] = self.sum_functions.selected_function_values(
+        out[:, ~is_balance] = self.sum_functions.evaluate_selected_functions(
             shape, self.load_case_sums, function_indices[~is_balance] - count
         )
         return out
 
-    def _independent_sums(self) -> tuple[NodeIndices, Array]:
-        """Indices of independent sums, the largest pivot first, and the matrix that orthogonalises them."""
+    def _find_independent_sums(self) -> tuple[NodeIndices, Array]:
+        """Find linearly independent sums: their indices, and the matrix that orthogonalises them.
+
+        The order is that of decreasing pivots in the QR decomposition of `sketch_matrix`.
+        """
         triangle, order = qr(self.sketch_matrix, mode="r", pivoting=True)
         size = np.abs(np.diag(triangle))
         count = int(np.sum(size > MIN_OVER_MAX_PIVOT * size[0]))
@@ -447,7 +474,7 @@ class _SumSystem:
 def _restore_equilibrium(
     normalised_pressure: PressureDistribution, node_weights: Array
 ) -> PressureDistribution:
-    """Select the nodes with a weight > 0; make total share, centroid and mean pressures exact."""
+    """Select the nodes with a weight > 0; correct their shares, positions and pressures to equilibrium."""
     points = normalised_pressure.select_nodes(np.flatnonzero(node_weights > 0.0))
     share = node_weights[node_weights > 0.0] / np.sum(node_weights)
     return PressureDistribution(

@@ -85,21 +85,21 @@ def find_backbone(torque: Array, angle: Array) -> Backbone:
     """
     if not np.ptp(torque) > 0.0:
         raise ValueError(f"torque is {torque[0]:g} N.m throughout; expected a range of torques")
-    branches = _full_range_branches(_cut_branches(torque))
+    branches = _select_full_range_branches(_cut_branches(torque))
     if len({b.is_rising for b in branches}) == 1:
         indices = np.concatenate([b.sample_indices for b in branches])
-        line = _average_groups(torque[indices], angle[indices])
-        return _check_monotone(Backbone(*line, len(branches), None, None, None))
+        line = _average_samples_in_groups(torque[indices], angle[indices])
+        return _check_monotonic_backbone(Backbone(*line, len(branches), None, None, None))
     low, high = (
         inner(outer(getattr(b, name) for b in branches if b.is_rising is rising) for rising in (True, False))
         for inner, outer, name in ((max, min, "min_torque"), (min, max, "max_torque"))
     )
     if not high - low >= 0.5 * np.ptp(torque):
         raise ValueError(
-            f"rising and falling branch share {low:g} to {high:g} N.m of {np.min(torque):g} to "
-            f"{np.max(torque):g} N.m; expected loops over the whole range"
+            f"rising and falling branches overlap only from {low:g} to {high:g} N.m, the torque goes from "
+            f"{np.min(torque):g} to {np.max(torque):g} N.m; expected loops over the whole range"
         )
-    return _check_monotone(_separate_hysteresis(torque, angle, branches, float(low), float(high)))
+    return _check_monotonic_backbone(_separate_hysteresis(torque, angle, branches, float(low), float(high)))
 
 
 def _cut_branches(torque: Array) -> list[_Branch]:
@@ -114,7 +114,7 @@ def _cut_branches(torque: Array) -> list[_Branch]:
     return branches
 
 
-def _full_range_branches(branches: list[_Branch]) -> list[_Branch]:
+def _select_full_range_branches(branches: list[_Branch]) -> list[_Branch]:
     """Select the branches that cover the full torque range; if a direction has none, all its branches."""
     span = max(b.max_torque for b in branches) - min(b.min_torque for b in branches)
     selected = []
@@ -162,7 +162,7 @@ def _separate_hysteresis(
     covariance = normal * float(residual @ residual) / max(indices.size - values.size, 1)
     gap_values = slice(knots, knots + int(np.sum(open_gap)))
 
-    def weighted_gap(knot_weights: Array) -> tuple[float, float]:
+    def sum_weighted_gaps(knot_weights: Array) -> tuple[float, float]:
         """Weighted sum of half the angle gaps [rad] of both branches at the knots; its standard deviation."""
         row = knot_weights[open_gap]
         return float(row @ values[gap_values]), float(np.sqrt(row @ covariance[gap_values, gap_values] @ row))
@@ -170,7 +170,7 @@ def _separate_hysteresis(
     lengths = np.gradient(grid)
     lengths[[0, -1]] = 0.5 * (grid[1] - grid[0])
     backlash = (
-        weighted_gap(-2.0 * _hat_functions(np.zeros(1), grid).toarray()[0])
+        sum_weighted_gaps(-2.0 * _hat_functions(np.zeros(1), grid).toarray()[0])
         if min_torque <= 0.0 <= max_torque
         else None
     )
@@ -182,20 +182,20 @@ def _separate_hysteresis(
     central = np.abs(position) <= CENTRAL_OVER_WHOLE_TORQUE_RANGE
     friction = _fit_friction_torque(T[central], driftless[central], direction[central])
     loading = direction * position >= 0.0
-    line = _average_groups((T - friction * direction)[loading], driftless[loading])
-    return Backbone(*line, len(branches), weighted_gap(-2.0 * lengths), backlash, drift)
+    line = _average_samples_in_groups((T - friction * direction)[loading], driftless[loading])
+    return Backbone(*line, len(branches), sum_weighted_gaps(-2.0 * lengths), backlash, drift)
 
 
-def _fit_friction_torque(torque: Array, angle: Array, direction: Array) -> float:
+def _fit_friction_torque(torque: Array, angle: Array, branch_direction: Array) -> float:
     """Fit the friction torque [N.m]: half the torque difference of both branches at equal angles.
 
-    direction : +1 (rising) or -1 (falling) for each sample (n)
+    branch_direction : +1 (rising) or -1 (falling) for each sample (n)
 
     The friction torque is assumed constant over the samples.
     """
     knots = int(np.clip(angle.size // POINTS_PER_KNOT, 2, MAX_KNOTS))
     grid = np.linspace(np.min(angle), np.max(angle), knots)
-    design = np.column_stack([_hat_functions(angle, grid).toarray(), direction])
+    design = np.column_stack([_hat_functions(angle, grid).toarray(), branch_direction])
     return float(np.linalg.lstsq(design, torque)[0][-1])
 
 
@@ -210,7 +210,7 @@ def _has_turning_point(
     """Whether a rising and a falling branch meet at an end of the torque range.
 
     end_torque, torque_range : torque of that end, and length of the range [N.m]
-    end_index : 0: lower end, -1: upper end
+    end_index                : 0: lower end, -1: upper end
     """
     pairs = pairwise(branches)
     return any(
@@ -231,7 +231,7 @@ def _is_drift_determined(design_matrix: scipy.sparse.csr_matrix) -> bool:
     return bool(np.linalg.norm(independent) > MIN_INDEPENDENT_DRIFT_FRACTION * np.linalg.norm(last))
 
 
-def _average_groups(torque: Array, angle: Array) -> tuple[Array, Array, Array]:
+def _average_samples_in_groups(torque: Array, angle: Array) -> tuple[Array, Array, Array]:
     """Average the samples of a record in groups of similar torque, at most MAX_BACKBONE_POINTS.
 
     Returns mean torque, mean angle and size (n) of the groups.
@@ -244,7 +244,7 @@ def _average_groups(torque: Array, angle: Array) -> tuple[Array, Array, Array]:
     return T, phi, count
 
 
-def _check_monotone(backbone: Backbone) -> Backbone:
+def _check_monotonic_backbone(backbone: Backbone) -> Backbone:
     """Return a backbone; ValueError if its angle falls between neighbouring tenths of the torque range."""
     edges = np.linspace(backbone.torque[0], backbone.torque[-1], MONOTONICITY_CHECK_INTERVALS + 1)
     tenth = np.clip(

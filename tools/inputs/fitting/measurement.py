@@ -13,13 +13,13 @@ from jointfmu.quantity.units import UnitSizes, unit_sizes
 from jointfmu.quantity.units import unit_size_in as measured_in
 
 from ...common import columns
-from .branches import Loops, cut_branches
+from .branches import MeasuredLoops, cut_branches
 from .decay import DecayPoints, analyse_decay
 from .hysteresis import ForcedResponse, FreeVibration
 
 MIN_MEASUREMENT_ROW_COUNT = 8
 """Smallest number of rows of a measurement file [1]."""
-RUN_COLUMN = "run"
+RUN_NUMBER_COLUMN = "run"
 """Column with the number of the run, if a file holds several runs."""
 COLUMN_SYNONYMS = {
     "displacement": ("x", "s", "u", "weg", "verschiebung"),
@@ -40,11 +40,11 @@ start values [1] is at most this value, and at least its inverse."""
 
 
 @dataclass(frozen=True, slots=True)
-class ColumnNames:
+class MeasurementColumns:
     """Names and units of the columns for force (or torque) and motion (displacement or angle) of a joint.
 
     force_column, motion_column : names of the columns
-    force_units, motion_units : {unit: size in SI units} allowed for each, SI unit first
+    force_units, motion_units   : {unit: size in SI units} allowed for each, SI unit first
     """
 
     force_column: str
@@ -61,7 +61,7 @@ class ColumnNames:
             "time": unit_sizes("s", "ms"),
             "frequency": unit_sizes("Hz", "kHz"),
             "damping": unit_sizes("1"),
-            RUN_COLUMN: unit_sizes("1"),
+            RUN_NUMBER_COLUMN: unit_sizes("1"),
         }
 
     @property
@@ -71,45 +71,52 @@ class ColumnNames:
 
     def check_stiffness_ratio(
         self,
-        path: Path,
-        stiffness_ratio: float,
+        measurement_path: Path,
+        measured_over_start_stiffness: float,
         stated_units: Mapping[str, str],
         start_file: ParameterFile,
         is_force_plausible: bool = False,
     ) -> None:
         """Check that the measured stiffness is near the stiffness of the start values.
 
-        stiffness_ratio    : measured stiffness over stiffness of the start values [1]
-        stated_units       : {column: unit in the heading}
-        start_file         : parameter file with the start values
-        is_force_plausible : whether the force at gross slip shows that the unit of the force is right
+        measured_over_start_stiffness : measured stiffness over stiffness of the start values [1]
+        stated_units                  : {column: unit in the heading}
+        start_file                    : parameter file with the start values
+        is_force_plausible            : whether the force at gross slip shows that the unit of the force is
+                                        right
 
         Raises InputRefusal, with a likely unit error, if the ratio or its inverse reaches
         WRONG_UNIT_MEASURED_OVER_START_STIFFNESS.
         """
         if (
             1.0 / WRONG_UNIT_MEASURED_OVER_START_STIFFNESS
-            < stiffness_ratio
+            < measured_over_start_stiffness
             < WRONG_UNIT_MEASURED_OVER_START_STIFFNESS
         ):
             return
+        unit_error = self.describe_likely_unit_error(
+            measured_over_start_stiffness, stated_units, is_force_plausible
+        )
         raise InputRefusal(
-            f"{path}: the stiffness is {stiffness_ratio:.3g} times that of {start_file.name}, allowed are "
+            f"{measurement_path}: the measured stiffness is {measured_over_start_stiffness:.3g} times that "
+            f"of the start values, {start_file.name}; allowed are "
             f"{1.0 / WRONG_UNIT_MEASURED_OVER_START_STIFFNESS:g} to "
-            f"{WRONG_UNIT_MEASURED_OVER_START_STIFFNESS:g}: "
-            f"{self.describe_likely_unit_error(stiffness_ratio, stated_units, is_force_plausible)}; if the "
-            "units are right, start from the parameter file of a joint of similar stiffness",
+            f"{WRONG_UNIT_MEASURED_OVER_START_STIFFNESS:g}: {unit_error}; if the units are right, start from "
+            "the parameter file of a joint of similar stiffness",
             "params",
         )
 
     def describe_likely_unit_error(
-        self, stiffness_ratio: float, stated_units: Mapping[str, str], is_force_plausible: bool = False
+        self,
+        measured_over_start_stiffness: float,
+        stated_units: Mapping[str, str],
+        is_force_plausible: bool = False,
     ) -> str:
         """Describe the unit error that best explains a wrong ratio of stiffnesses, as text.
 
-        stiffness_ratio    : measured stiffness over stiffness of the start values [1]
-        stated_units       : {column: unit in the heading}
-        is_force_plausible : whether the unit of the force is known to be right
+        measured_over_start_stiffness : measured stiffness over stiffness of the start values [1]
+        stated_units                  : {column: unit in the heading}
+        is_force_plausible            : whether the unit of the force is known to be right
 
         If a wrong unit of either column explains the ratio, the text names both.
         """
@@ -122,7 +129,8 @@ class ColumnNames:
                 continue
             stated = measured_in(stated_units[column], units)
             errors = {
-                unit: abs(np.log(stiffness_ratio * (size / stated) ** power)) for unit, size in units.items()
+                unit: abs(np.log(measured_over_start_stiffness * (size / stated) ** power))
+                for unit, size in units.items()
             }
             unit = min(errors, key=errors.__getitem__)
             if errors[unit] < np.log(MAX_CORRECTED_OVER_START_STIFFNESS):
@@ -130,13 +138,15 @@ class ColumnNames:
                 explanations.append((float(errors[unit]), text))
         if not explanations:
             columns_text = f"column {self.motion_column}" if is_force_plausible else "both columns"
-            return f"check the units of {columns_text}, no usual one explains it"
+            return f"check the units of {columns_text} (no usual unit explains the ratio)"
         return "likely " + ", or ".join(
             text for _, text in sorted(explanations, key=lambda item: round(item[0], 6))
         )
 
 
-def read_columns(path: str | Path, column_names: ColumnNames) -> tuple[str, columns.Columns]:
+def read_columns(
+    measurement_path: str | Path, column_names: MeasurementColumns
+) -> tuple[str, columns.TableColumns]:
     """Read a measurement file: its kind, recognised by its columns, and the columns.
 
     kind "loops"    : columns motion, force
@@ -146,15 +156,17 @@ def read_columns(path: str | Path, column_names: ColumnNames) -> tuple[str, colu
 
     Raises ValueError, one line, for any other set of columns.
     """
-    table = columns.read_columns(path, column_names.column_units, MIN_MEASUREMENT_ROW_COUNT, COLUMN_SYNONYMS)
+    table = columns.read_columns(
+        measurement_path, column_names.column_units, MIN_MEASUREMENT_ROW_COUNT, COLUMN_SYNONYMS
+    )
     table.require_column(column_names.motion_column, column_names.column_units)
-    present = set(table.columns)
+    present = set(table.values_by_name)
     if {"frequency", column_names.force_column} <= present:
-        return "response", table.check_positive(
+        return "response", table.check_positive_columns(
             (column_names.motion_column, "frequency", column_names.force_column), column_names.column_units
         )
     if {"frequency", "damping"} <= present:
-        return "backbone", table.check_positive(
+        return "backbone", table.check_positive_columns(
             (column_names.motion_column, "frequency", "damping"), column_names.column_units
         )
     if "frequency" not in present and column_names.force_column in present:
@@ -168,21 +180,24 @@ def read_columns(path: str | Path, column_names: ColumnNames) -> tuple[str, colu
         ("frequency", "damping"),
     )
     raise ValueError(
-        f"{table.path}: has {', '.join(table.columns)} alone; expected {column_names.motion_column} with "
-        f"{', or with '.join(' and '.join(names) for names in expected)}"
+        f"{table.table_path}: has {', '.join(table.values_by_name)} alone; expected "
+        f"{column_names.motion_column} with {', or with '.join(' and '.join(names) for names in expected)}"
     )
 
 
-def split_runs(measured_columns: columns.Columns) -> list[tuple[str, dict[str, Array]]]:
+def split_runs(measured_columns: columns.TableColumns) -> list[tuple[str, dict[str, Array]]]:
     """Split a table by the column `run`: (prefix of error messages, {name: column}) of each run."""
-    if RUN_COLUMN not in measured_columns.columns:
-        return [("", dict(measured_columns.columns))]
-    run_numbers = measured_columns.columns[RUN_COLUMN]
+    if RUN_NUMBER_COLUMN not in measured_columns.values_by_name:
+        return [("", dict(measured_columns.values_by_name))]
+    run_numbers = measured_columns.values_by_name[RUN_NUMBER_COLUMN]
     result = []
     for number in dict.fromkeys(run_numbers.tolist()):
         rows = run_numbers == number
         result.append(
-            (f"run {number:g}: ", {name: column[rows] for name, column in measured_columns.columns.items()})
+            (
+                f"run {number:g}: ",
+                {name: column[rows] for name, column in measured_columns.values_by_name.items()},
+            )
         )
     return result
 
@@ -191,65 +206,73 @@ def split_runs(measured_columns: columns.Columns) -> list[tuple[str, dict[str, A
 class Measurement:
     """Measurement of a joint, read from a file.
 
-    kind         : "loops", "response", "backbone" or "decay", see `read_columns`
-    column_names : names and units of the columns
-    stated_units : {column: unit in the heading}
+    measurement_kind : "loops", "response", "backbone" or "decay", see `read_columns`
+    column_names     : names and units of the columns
+    stated_units     : {column: unit in the heading}
     """
 
-    path: Path
-    kind: str
-    column_names: ColumnNames
-    data: Loops | FreeVibration | ForcedResponse
+    measurement_path: Path
+    measurement_kind: str
+    column_names: MeasurementColumns
+    measured_data: MeasuredLoops | FreeVibration | ForcedResponse
     stated_units: Mapping[str, str]
 
     @property
-    def motion(self) -> Array:
+    def joint_motion(self) -> Array:
         """Motion (n) of all samples of loops; amplitudes (n) of a vibration."""
-        match self.data:
-            case Loops():
-                return self.data.motion
+        match self.measured_data:
+            case MeasuredLoops():
+                return self.measured_data.joint_motion
             case FreeVibration():
-                return self.data.decay_points.amplitude
+                return self.measured_data.decay_points.motion_amplitude
             case ForcedResponse():
-                return self.data.amplitude
+                return self.measured_data.motion_amplitude
 
     @property
-    def amplitude(self) -> float:
+    def largest_amplitude(self) -> float:
         """Largest amplitude of the motion; of loops, half the range of the motion."""
-        return float(0.5 * np.ptp(self.motion) if self.kind == "loops" else np.max(self.motion))
+        return float(
+            0.5 * np.ptp(self.joint_motion) if self.measurement_kind == "loops" else np.max(self.joint_motion)
+        )
 
     def rest_stiffness(self, inertia: float | None) -> float:
         """Approximate stiffness [N/m or N.m/rad] at small motions.
 
         inertia : vibrating mass [kg] or moment of inertia [kg.m2]; not used for loops, required otherwise
         """
-        if isinstance(self.data, Loops):
-            return self.data.rest_stiffness
-        if isinstance(self.data, FreeVibration):
-            frequency = self.data.decay_points.frequency[np.argmin(self.data.decay_points.amplitude)]
+        if isinstance(self.measured_data, MeasuredLoops):
+            return self.measured_data.rest_stiffness
+        if isinstance(self.measured_data, FreeVibration):
+            frequency = self.measured_data.decay_points.frequency[
+                np.argmin(self.measured_data.decay_points.motion_amplitude)
+            ]
         else:
-            amplitude = np.where(self.data.force == self.data.force.min(), self.data.amplitude, 0.0)
-            frequency = self.data.frequency[np.argmax(amplitude)]  # resonance at the smallest force
+            amplitude = np.where(
+                self.measured_data.force_amplitude == self.measured_data.force_amplitude.min(),
+                self.measured_data.motion_amplitude,
+                0.0,
+            )
+            frequency = self.measured_data.excitation_frequency[
+                np.argmax(amplitude)
+            ]  # resonance at the smallest force
         assert inertia is not None
         return float(inertia * (2.0 * np.pi * frequency) ** 2)
 
     @property
-    def range_text(self) -> str:
-        """Range of the data as text: kind of the measurement and largest amplitude."""
-        return (
-            f"{self.kind} up to {self.column_names.motion_column} {self.amplitude:.4g} "
-            f"{self.column_names.si_units[1]}"
-        )
+    def describe_range(self) -> str:
+        """Kind of the measurement and largest amplitude, as text."""
+        amplitude = f"{self.largest_amplitude:.4g} {self.column_names.si_units[1]}"
+        return f"{self.measurement_kind} up to {self.column_names.motion_column} {amplitude}"
 
 
-def read_measurement(path: str | Path, column_names: ColumnNames) -> Measurement:
+def read_measurement(measurement_path: str | Path, column_names: MeasurementColumns) -> Measurement:
     """Read a measurement file and evaluate it; see `read_columns` for its columns.
 
     Raises ValueError, one line that begins with the path.
     """
-    kind, table = read_columns(path, column_names)
+    kind, table = read_columns(measurement_path, column_names)
     records = split_runs(table)
-    data: Loops | FreeVibration | ForcedResponse
+    data: MeasuredLoops | FreeVibration | ForcedResponse
     try:
         if kind == "loops":
             data = cut_branches(
@@ -269,19 +292,19 @@ def read_measurement(path: str | Path, column_names: ColumnNames) -> Measurement
             )
         elif kind == "backbone":
             a, f, damping = (
-                table.columns[name] for name in (column_names.motion_column, "frequency", "damping")
+                table.values_by_name[name] for name in (column_names.motion_column, "frequency", "damping")
             )
             data = FreeVibration(DecayPoints(a, f, damping, np.ones_like(f), damping))
         else:
             data = ForcedResponse(
                 *(
-                    table.columns[name]
+                    table.values_by_name[name]
                     for name in ("frequency", column_names.force_column, column_names.motion_column)
                 )
             )
     except ValueError as error:
-        raise ValueError(f"{table.path}: {error}") from None
-    return Measurement(table.path, kind, column_names, data, table.units)
+        raise ValueError(f"{table.table_path}: {error}") from None
+    return Measurement(table.table_path, kind, column_names, data, table.heading_units)
 
 
 def _join_decay_points(decay_records: Sequence[DecayPoints]) -> DecayPoints:

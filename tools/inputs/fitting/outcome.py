@@ -2,7 +2,7 @@
 
 The singular values of the Jacobian (in the logarithms) over the noise are the reciprocal standard deviations
 of independent combinations `prod name^exponent`. A parameter or combination counts as determined
-if its standard deviation does not exceed its limit. The limit is MAX_RELATIVE_DEVIATION, or a tenth of the
+if its standard deviation does not exceed its limit. The limit is MAX_PARAMETER_DEVIATION, or a tenth of the
 interval of the parameter if that is smaller (both in logarithms).
 """
 
@@ -14,12 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointfmu.contact.roughness import MAX_ROUGHNESS_HEIGHT
-from jointfmu.files.timestamp import build_time
+from jointfmu.files.timestamp import get_build_time
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array, Interval, flatten_fields
 
 from ...common import plots
-from .least_squares import Solution, Unknown
+from .least_squares import FitSolution, Unknown
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -40,21 +40,22 @@ MIN_OVER_MAX_SINGULAR_VALUE = 1e-5
 class ParameterCombination:
     """Product of powers of fitted parameters, statistically independent of the other combinations.
 
-    exponents          : {name: exponent}, the largest is 1; of a parameter with a scale: of exp(name/scale)
+    exponents          : {name: exponent}, the largest is 1; the base is the parameter, for a parameter of any
+                         sign exp(parameter/scale)
     relative_deviation : relative standard deviation [1]; infinite if the data contain no information about it
     is_determined      : whether the standard deviation is within the limit
-    scales             : {name: scale with its unit} of parameters with a scale
+    parameter_scales   : {name: scale with its unit} of the parameters of any sign
     """
 
     exponents: Mapping[str, float]
     relative_deviation: float
     is_determined: bool
-    scales: Mapping[str, str] = field(default_factory=dict)
+    parameter_scales: Mapping[str, str] = field(default_factory=dict)
 
     def __str__(self) -> str:
         """Text of the combination, as in `E^1 nu^-0.5`."""
         factors = {
-            name: f"exp({name}/{self.scales[name]})" if name in self.scales else name
+            name: f"exp({name}/{self.parameter_scales[name]})" if name in self.parameter_scales else name
             for name in self.exponents
         }
         return " ".join(
@@ -63,9 +64,9 @@ class ParameterCombination:
         )
 
 
-def max_determined_deviation(unknown: Unknown) -> float:
+def max_deviation_of_determined_parameter(unknown: Unknown) -> float:
     """Limit [1] of the standard deviation of ln(parameter), up to which a parameter counts as determined."""
-    if unknown.scale or unknown.lower_bound <= 0.0 or not np.isfinite(unknown.upper_bound):
+    if unknown.parameter_scale or unknown.lower_bound <= 0.0 or not np.isfinite(unknown.upper_bound):
         return MAX_PARAMETER_DEVIATION
     return min(
         MAX_PARAMETER_DEVIATION,
@@ -73,9 +74,9 @@ def max_determined_deviation(unknown: Unknown) -> float:
     )
 
 
-def find_parameter_combinations(solution: Solution) -> list[ParameterCombination]:
+def find_parameter_combinations(solution: FitSolution) -> list[ParameterCombination]:
     """Statistically independent combinations of the parameters of a solution, best determined first."""
-    limits = np.array([max_determined_deviation(u) for u in solution.unknowns])
+    limits = np.array([max_deviation_of_determined_parameter(u) for u in solution.unknowns])
     _, s, rows = np.linalg.svd(solution.jacobian * limits, full_matrices=False)
     independent = []
     for value, row in zip(s, rows, strict=True):
@@ -83,7 +84,7 @@ def find_parameter_combinations(solution: Solution) -> list[ParameterCombination
         largest = powers[np.argmax(np.abs(row))]
         significant = np.abs(row) >= MIN_OVER_MAX_EXPONENT * np.max(np.abs(row))
         exponents = {
-            u.name: float(p / largest)
+            u.parameter_name: float(p / largest)
             for u, p, is_named in zip(solution.unknowns, powers, significant, strict=True)
             if is_named
         }
@@ -94,13 +95,17 @@ def find_parameter_combinations(solution: Solution) -> list[ParameterCombination
                 exponents,
                 float(deviation / abs(largest)),
                 bool(deviation <= 1.0),
-                {u.name: f"{u.scale:.3g} {u.unit}" for u in solution.unknowns if u.scale},
+                {
+                    u.parameter_name: f"{u.parameter_scale:.3g} {u.si_unit}"
+                    for u in solution.unknowns
+                    if u.parameter_scale
+                },
             )
         )
     return independent
 
 
-def undetermined_names(solution: Solution) -> list[str]:
+def find_undetermined_parameters(solution: FitSolution) -> list[str]:
     """Names of the parameters that the data do not determine, or that are on a bound."""
     without_effect = {
         name
@@ -109,11 +114,11 @@ def undetermined_names(solution: Solution) -> list[str]:
         for name in c.exponents
     }
     return [
-        u.name
+        u.parameter_name
         for u in solution.unknowns
-        if solution.relative_deviations[u.name] > max_determined_deviation(u)
-        or u.name in solution.names_at_bound
-        or u.name in without_effect
+        if solution.relative_deviations[u.parameter_name] > max_deviation_of_determined_parameter(u)
+        or u.parameter_name in solution.names_at_bound
+        or u.parameter_name in without_effect
     ]
 
 
@@ -151,43 +156,48 @@ class FitPlot:
     other_laws: Mapping[str, tuple[Array, Array]] = field(default_factory=dict)
 
 
-FitFacts = dict[str, tuple[float, str, str]]
+DerivedFitValues = dict[str, tuple[float, str, str]]
 """Results {name: (value, unit, meaning)} that are no parameters."""
+_REMEDY_TEXT = "fit other parameters, or add data"
+"""What to do if the data do not determine the fitted parameters."""
 
 
 @dataclass(frozen=True, slots=True)
 class FitResult:
-    """Result of a fit: fitted parameter file, solution, facts, plots, notes.
+    """Result of a fit: fitted parameter file, solution, derived values, plots, notes.
 
-    facts                : {name: (value, unit, meaning)} of results that are no parameters
-    fit_plots            : plots, drawn side by side
-    notes                : messages for the user, one line each
-    confidence_intervals : {name: ends of the 95 % confidence interval}, if they are known
-    doubt                : reason to reject the fit that the procedure found, as text; None: no reason
+    facts                      : {name: (value, unit, meaning)} of further values that the fit computes
+    fit_plots                  : plots, drawn side by side
+    notes                      : messages for the user, one line each
+    confidence_intervals       : {name: ends of the 95 % confidence interval}, if they are known
+    procedure_rejection_reason : reason of the fit procedure to reject the fit, as text; None: no reason
     """
 
     parameters: ParameterFile
-    solution: Solution
-    facts: FitFacts
+    solution: FitSolution
+    facts: DerivedFitValues
     fit_plots: Sequence[FitPlot]
     notes: Sequence[str] = ()
     confidence_intervals: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    doubt: str | None = None
+    procedure_rejection_reason: str | None = None
 
-    def unknown_rows(self) -> list[dict[str, Any]]:
-        """Table of the unknowns: name, value, start value, unit, relative deviation, whether determined."""
-        undetermined, deviations = undetermined_names(self.solution), self.solution.relative_deviations
+    def list_fitted_parameters(self) -> list[dict[str, Any]]:
+        """Rows of the table of fitted parameters: value, start value, unit, deviation, whether determined."""
+        undetermined, deviations = (
+            find_undetermined_parameters(self.solution),
+            self.solution.relative_deviations,
+        )
         return [
             {
-                "name": u.name,
-                "value": self.solution.values[u.name],
+                "name": u.parameter_name,
+                "value": self.solution.values[u.parameter_name],
                 "start": u.start_value,
-                "unit": u.unit,
-                "relative_deviation": _finite_or_none(deviations[u.name]),
-                "determined": u.name not in undetermined,
+                "unit": u.si_unit,
+                "relative_deviation": _finite_or_none(deviations[u.parameter_name]),
+                "determined": u.parameter_name not in undetermined,
                 **(
-                    {"interval": [*map(_finite_or_none, self.confidence_intervals[u.name])]}
-                    if u.name in self.confidence_intervals
+                    {"interval": [*map(_finite_or_none, self.confidence_intervals[u.parameter_name])]}
+                    if u.parameter_name in self.confidence_intervals
                     else {}
                 ),
             }
@@ -196,12 +206,12 @@ class FitResult:
 
     def rejection_reason(self) -> str | None:
         """Reason to reject the fit, as text; None if the fit is accepted."""
-        names = [u.name for u in self.solution.unknowns]
-        if self.doubt:
-            return self.doubt
+        names = [u.parameter_name for u in self.solution.unknowns]
+        if self.procedure_rejection_reason:
+            return self.procedure_rejection_reason
         if at_bound := self.solution.names_at_bound:
             interval = "their intervals" if at_bound[1:] else "its interval"
-            return f"{', '.join(at_bound)} ended on a bound of {interval}"
+            return f"{', '.join(at_bound)} ended on a bound of {interval}; {_REMEDY_TEXT}"
         if (height := self.solution.values.get(RMS_HEIGHT_PARAMETER, 0.0)) > MAX_ROUGHNESS_HEIGHT:
             return (
                 f"{RMS_HEIGHT_PARAMETER} = {1e6 * height:.3g} um is outside (0, "
@@ -209,13 +219,13 @@ class FitResult:
                 "um: too large for a roughness; check the units, and state the stiffness in series with the "
                 "joint (--series-stiffness)"
             )
-        count = len(undetermined_names(self.solution))
+        count = len(find_undetermined_parameters(self.solution))
         if (
             names
             and count == len(names)
             and not any(c.is_determined for c in find_parameter_combinations(self.solution))
         ):
-            return f"the data determine none of {', '.join(names)}, nor a combination of them"
+            return f"the data determine none of {', '.join(names)}, nor a combination of them; {_REMEDY_TEXT}"
         if "loop_area_law" in self.facts:
             measured, law = self.facts["loop_area"][0], self.facts["loop_area_law"][0]
             if (
@@ -231,28 +241,28 @@ class FitResult:
             law, constant = self.facts["held_out"][0], self.facts["held_out_constant"][0]
             if law > MAX_LAW_OVER_CONSTANT_RESIDUAL * constant:
                 return (
-                    f"the fit misses the held-out part of the log by {law:.3g} N.m, a constant friction "
-                    f"torque by {constant:.3g} N.m; "
-                    f"allowed is {MAX_LAW_OVER_CONSTANT_RESIDUAL:g} times the latter"
+                    f"in the held-out part of the log, the error of the fit is {law:.3g} N.m, that of a "
+                    f"constant friction torque {constant:.3g} N.m; allowed is "
+                    f"{MAX_LAW_OVER_CONSTANT_RESIDUAL:g} times the error of the constant"
                 )
         return None
 
     def warnings(self) -> list[str]:
         """Warnings, one line each: undetermined parameters, parameters on bounds, model limits, notes."""
         lines = []
-        if names := undetermined_names(self.solution):
+        if names := find_undetermined_parameters(self.solution):
             lines.append(f"the data do not determine {', '.join(names)}: other values fit as well")
             ranked = find_parameter_combinations(self.solution)
             for combination in ranked:
                 if combination.is_determined:
                     lines.append(
                         f"the combination {combination} is determined within "
-                        f"{format_deviation(combination.relative_deviation)}"
+                        f"{format_relative_deviation(combination.relative_deviation)}"
                     )
                 elif len(combination.exponents) > 1:
                     lines.append(
                         f"the combination {combination} is not determined: "
-                        f"{format_deviation(combination.relative_deviation)}"
+                        f"{format_relative_deviation(combination.relative_deviation)}"
                     )
         lines += [f"{name} ended on a bound of its interval" for name in self.solution.names_at_bound]
         if self.solution.refusal_message:
@@ -263,7 +273,7 @@ class FitResult:
         """Result of the fit as one JSON object."""
         return {
             "joint": self.parameters.joint,
-            "unknowns": self.unknown_rows(),
+            "unknowns": self.list_fitted_parameters(),
             "correlation": [[_finite_or_none(x) for x in row] for row in self.solution.correlation.tolist()],
             "combinations": [
                 {
@@ -281,7 +291,7 @@ class FitResult:
         }
 
 
-def correlation_note(
+def note_residual_correlation(
     residuals: Array, quantity_name: str, neighbour_mask: NDArray[np.bool_] | slice = slice(None)
 ) -> list[str]:
     """Note for the user if neighbouring residuals are correlated: the law misses the data systematically.
@@ -305,19 +315,21 @@ def correlation_note(
     ]
 
 
-def format_deviation(deviation: float) -> str:
+def format_relative_deviation(relative_deviation: float) -> str:
     """Format a relative standard deviation [1]: in percent, as a factor, or as "orders of magnitude"."""
-    if deviation < 1.0:
-        return f"{100.0 * deviation:.2g} %"
-    return f"a factor of {np.exp(deviation):.2g}" if deviation < 5.0 else "orders of magnitude"
+    if relative_deviation < 1.0:
+        return f"{100.0 * relative_deviation:.2g} %"
+    return (
+        f"a factor of {np.exp(relative_deviation):.2g}" if relative_deviation < 5.0 else "orders of magnitude"
+    )
 
 
-def _finite_or_none(value: float) -> float | None:
+def _finite_or_none(number: float) -> float | None:
     """Finite value as it is; None (JSON null) for infinity and NaN."""
-    return float(value) if np.isfinite(value) else None
+    return float(number) if np.isfinite(number) else None
 
 
-def make_unknowns(
+def make_fit_unknowns(
     start_file: ParameterFile, fitted_names: Sequence[str], bounds_by_name: Mapping[str, tuple[float, float]]
 ) -> list[Unknown]:
     """Make the unknowns of a fit: named parameters, with values of `start_file` and declared intervals.
@@ -349,35 +361,35 @@ def make_predictor(
     return lambda values: predict_values(start_file.with_values(values, "calibration", "fit").values)
 
 
-def fitted_parameters(
+def build_fitted_file(
     start_file: ParameterFile,
     parameter_values: Mapping[str, float],
-    source_kind: str,
-    data_name: str,
-    range_text: str,
+    value_origin: str,
+    data_file_name: str,
+    measured_range_text: str,
 ) -> ParameterFile:
     """Copy of a parameter file with fitted values; their source states data, range and date.
 
-    data_name, range_text : data file and range of the data, as text
-    source_kind           : kind of the source
+    data_file_name, measured_range_text : data file and range of the data, as text
+    value_origin               : kind of the source
 
     The date is today, or SOURCE_DATE_EPOCH if that environment variable is set (reproducible files).
 
     Raises ValueError if SOURCE_DATE_EPOCH is not a number of seconds.
     """
-    today = build_time().date().isoformat()
+    today = get_build_time().date().isoformat()
     file = start_file.with_values(
-        parameter_values, source_kind, f"fitted to {data_name}, {today}, {range_text}"
+        parameter_values, value_origin, f"fitted to {data_file_name}, {today}, {measured_range_text}"
     )
-    return replace(file, name=f"fitted to {data_name}")
+    return replace(file, name=f"fitted to {data_file_name}")
 
 
-def figure_size(fit_result: FitResult) -> tuple[float, float]:
+def fit_figure_size(fit_result: FitResult) -> tuple[float, float]:
     """Width and height [inch] of the figure of a fit."""
     return 3.6 * (1 + len(fit_result.fit_plots)), 5.6
 
 
-def draw_fit(figure: "Figure", fit_result: FitResult) -> None:
+def draw_fit_plots(figure: "Figure", fit_result: FitResult) -> None:
     """Draw the plots of a fit side by side: data and law above, misfit below."""
     pictures = fit_result.fit_plots
     all_axes = figure.subplots(2, len(pictures), sharex="col", height_ratios=(2.4, 1.0), squeeze=False)

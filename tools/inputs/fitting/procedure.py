@@ -15,28 +15,28 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Procedure:
+class FitProcedure:
     """Procedure that fits parameters of a joint to data.
 
-    name                : name of the procedure, with hyphens
-    description         : which parameters, which joint
-    takes_file          : whether the data are a measurement file
-    takes_several_files : whether `run_fit` takes a list of paths instead of one path
-    identifying_column  : a column that all files of this procedure have; files of procedures with the same
-                          name for other joints do not have it
-    options             : further options of the command
-    run_fit             : function ([path or paths,] parameter file with the start values or None, names of
-                          the parameters to be fitted or None, **options) -> FitResult; it loads the module of
-                          the joint only when called. Raises ValueError for bad input, RuntimeError if the fit
-                          does not converge.
+    procedure_name        : name of the procedure, with hyphens
+    procedure_description : which parameters, which joint
+    takes_file            : whether the data are a measurement file
+    takes_several_files   : whether `run_fit` takes a list of paths instead of one path
+    identifying_column    : a column that all files of this procedure have; files of procedures with the same
+                            name for other joints do not have it
+    procedure_options     : further options of the command
+    run_fit               : function ([path or paths,] parameter file with the start values or None, names of
+                            the parameters to be fitted or None, **options) -> FitResult; it loads the module
+                            of the joint only when called. Raises ValueError for bad input, RuntimeError if
+                            the fit does not converge.
     """
 
-    name: str
-    description: str
+    procedure_name: str
+    procedure_description: str
     takes_file: bool
     takes_several_files: bool = False
     identifying_column: str = ""
-    options: Sequence[Option] = ()
+    procedure_options: Sequence[Option] = ()
     run_fit: "Callable[..., FitResult]"
 
 
@@ -44,26 +44,26 @@ def make_lazy_fit(module_name: str) -> "Callable[..., FitResult]":
     """Make the function that loads a module when called, and calls the function `fit` of this module."""
 
     def call_fit(*arguments: object, **options: object) -> "FitResult":
-        """Load the module, and fit."""
+        """Import the fit module of the joint, and call its function `fit`."""
         result: FitResult = import_module(module_name).fit(*arguments, **options)
         return result
 
     return call_fit
 
 
-def fit_procedures() -> dict[str, dict[str, Procedure]]:
-    """Fit procedures of all joints: {name: {joint: procedure}}; several joints may share a name."""
-    result: dict[str, dict[str, Procedure]] = {}
+def find_fit_procedures() -> dict[str, dict[str, FitProcedure]]:
+    """Find the fit procedures of all joints: {procedure name: {joint: procedure}}."""
+    result: dict[str, dict[str, FitProcedure]] = {}
     for kind in KINDS.values():
         module = load_tool_module(kind, "fit")
         for procedure in module.FIT_PROCEDURES if module else ():
-            result.setdefault(procedure.name, {})[kind.name] = procedure
+            result.setdefault(procedure.procedure_name, {})[kind.name] = procedure
     return result
 
 
 DAMPING_RATIO_OPTION = Option(
     "damping_ratio",
-    "damping ratio of the structure without the joint [1]; to fit it: --free damping_ratio",
+    "damping ratio of the structure without the joint [1]; --free damping_ratio fits it",
     default=0.0,
     is_number=True,
 )

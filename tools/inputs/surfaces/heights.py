@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from jointfmu.quantity import Array
 
-from ...common.columns import CONTROL_CHARACTERS
+from ...common.columns import CONTROL_CHARACTER_PATTERN
 
 FORM_NAMES = ("tilt", "mean", "curvature")
 """Forms that can be removed: a plane (default), the mean height, a surface of second order."""
@@ -23,82 +23,82 @@ RELATIVE_ROUND_OFF = 1e-9
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Profile:
-    """Profile: heights along a line.
+    """Profile of a surface: heights at equally spaced points along a line.
 
-    z    : heights (n,) [m], NaN where missing
-    dx   : spacing [m]
-    name : name for messages
+    z         : heights (n,) [m], NaN where missing
+    dx        : spacing [m]
+    scan_name : name of the scan in messages
     """
 
     z: Array
     dx: float
-    name: str
+    scan_name: str
 
     def __post_init__(self) -> None:
         if self.z.size < MIN_PROFILE_POINTS:
             raise ValueError(
-                f"{self.name}: {self.z.size} points, a profile needs at least {MIN_PROFILE_POINTS}"
+                f"{self.scan_name}: {self.z.size} points, a profile needs at least {MIN_PROFILE_POINTS}"
             )
-        _check_heights(self.name, self.z, self.dx)
+        _check_heights(self.scan_name, self.z, self.dx)
 
     @property
-    def lengths(self) -> tuple[float, ...]:
+    def side_lengths(self) -> tuple[float, ...]:
         """Evaluation length [m] of the profile."""
         return (self.z.size * self.dx,)
 
-    def with_heights(self, z: Array) -> "Profile":
+    def replace_heights(self, z: Array) -> "Profile":
         """Copy of the profile with other heights."""
         return replace(self, z=z)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArealMap:
-    """Areal map: heights over a rectangle.
+    """Map of surface heights at the points of a rectangular grid (areal scan).
 
-    z      : heights (ny, nx) [m], NaN where missing
-    dx, dy : spacing [m]
-    name   : name for messages
+    z         : heights (ny, nx) [m], NaN where missing
+    dx, dy    : spacing [m]
+    scan_name : name of the scan in messages
     """
 
     z: Array
     dx: float
     dy: float
-    name: str
+    scan_name: str
 
     def __post_init__(self) -> None:
         if min(self.z.shape) < MIN_AREAL_POINTS:
             shape = " x ".join(str(n) for n in self.z.shape[::-1])
             raise ValueError(
-                f"{self.name}: {shape} points, an areal map needs at least {MIN_AREAL_POINTS} x "
+                f"{self.scan_name}: {shape} points, an areal map needs at least {MIN_AREAL_POINTS} x "
                 f"{MIN_AREAL_POINTS}"
             )
-        _check_heights(self.name, self.z, self.dx, self.dy)
+        _check_heights(self.scan_name, self.z, self.dx, self.dy)
 
     @property
-    def lengths(self) -> tuple[float, ...]:
+    def side_lengths(self) -> tuple[float, ...]:
         """Side lengths along x and y [m]."""
         return self.z.shape[1] * self.dx, self.z.shape[0] * self.dy
 
-    def with_heights(self, z: Array) -> "ArealMap":
+    def replace_heights(self, z: Array) -> "ArealMap":
         """Copy of the map with other heights."""
         return replace(self, z=z)
 
 
-Heights = Profile | ArealMap
+ScanHeights = Profile | ArealMap
 """Heights of a scan: profile or areal map."""
 
 
-def _check_heights(name: str, z: Array, *spacings: float) -> None:
+def _check_heights(scan_name: str, z: Array, *spacings: float) -> None:
     """Raise ValueError if a spacing is not positive, or if all heights are missing or constant."""
     for spacing in spacings:
         if not (np.isfinite(spacing) and spacing > 0.0):
-            raise ValueError(f"{name}: spacing = {spacing:g} m is outside (0, inf)")
+            raise ValueError(f"{scan_name}: spacing = {spacing:g} m is outside (0, inf)")
     valid = z[np.isfinite(z)]
     if valid.size == 0:
-        raise ValueError(f"{name}: all {z.size} heights are missing or NaN")
+        raise ValueError(f"{scan_name}: all {z.size} heights are missing or NaN")
     low, high = float(valid.min()), float(valid.max())
     if high - low <= RELATIVE_ROUND_OFF * max(abs(low), abs(high)):
-        raise ValueError(f"{name}: all heights are {low:g} m, a constant surface has no D and no G")
+        raise ValueError(f"{scan_name}: all heights are {low:g} m, a constant surface has no D and no G")
 
 
 GridIndices = NDArray[np.int64]
@@ -110,14 +110,14 @@ MAX_POSITION_OVER_LAST_DIGIT = 1e9
 """Largest position over the unit of its last digit [1]; beyond it, the last digit is unknown."""
 
 
-def fit_grid(
-    path: Path, axis_name: str, positions: Array, unit_size: float, allow_repeats: bool = False
+def fit_regular_grid(
+    scan_path: Path, axis_name: str, positions: Array, unit_size: float, allow_repeats: bool = False
 ) -> tuple[GridIndices, float]:
     """Fit a regular grid to positions (n,); return the grid index of each position, from 0, and the spacing.
 
-    path, axis_name : file and axis, for messages
-    positions       : increasing positions as the file states them, in a unit of `unit_size` metres
-    allow_repeats   : whether rounding may make neighbours equal
+    scan_path, axis_name : file and axis, for messages
+    positions            : increasing positions as the file states them, in a unit of `unit_size` metres
+    allow_repeats        : whether rounding may make neighbours equal
 
     First, the spacing is (last - first)/(n - 1). Each position must lie on the grid within GRID_TOLERANCE of
     the spacing, or within rounding: half a unit of its last digit plus half a unit of the last digit of the
@@ -125,14 +125,16 @@ def fit_grid(
     multiple of it. Raises ValueError if this fails too.
     """
     if positions.size < 2 or not np.all(np.isfinite(positions)):
-        raise ValueError(f"{path}: {axis_name} has a gap or a single value; expected increasing positions")
+        raise ValueError(
+            f"{scan_path}: {axis_name} has a gap or a single value; expected increasing positions"
+        )
     gaps = np.diff(positions)
     if positions[-1] == positions[0] or (not allow_repeats and gaps.min() <= 0.0):
-        raise ValueError(f"{path}: {axis_name} has repeated values; give every position once")
+        raise ValueError(f"{scan_path}: {axis_name} has repeated values; give every position once")
     offset = positions - positions[0]
     step = float(offset[-1] / (positions.size - 1))
     index = np.arange(positions.size)
-    digit = last_digit_unit(positions)
+    digit = last_printed_digit_size(positions)
     rounding = 0.5 * (digit + max(digit[0], digit[-1]))
     if np.all(_grid_distance(offset, index, step) <= np.maximum(GRID_TOLERANCE * step, rounding)):
         return index, step
@@ -145,7 +147,7 @@ def fit_grid(
         or _grid_distance(offset, index, step).max() > GRID_TOLERANCE * step
     ):
         raise ValueError(
-            f"{path}: the spacing of {axis_name} varies ({gaps.min() * unit_size:.4g} to "
+            f"{scan_path}: the spacing of {axis_name} varies ({gaps.min() * unit_size:.4g} to "
             f"{gaps.max() * unit_size:.4g} m); resample to a constant one"
         )
     return index, step
@@ -156,7 +158,7 @@ def _grid_distance(positions: Array, grid_indices: GridIndices, grid_spacing: fl
     return np.asarray(np.abs(positions - grid_indices * grid_spacing))
 
 
-def last_digit_unit(positions: Array) -> Array:
+def last_printed_digit_size(positions: Array) -> Array:
     """Unit of the last printed digit of each position (n,).
 
     The positions have a fixed number of decimals or of significant digits.
@@ -169,15 +171,14 @@ def last_digit_unit(positions: Array) -> Array:
     return np.maximum(decimal, significant)
 
 
-def _common_power_of_ten(numbers: Array) -> float:
-    """Largest power of ten, at most 1, of which all numbers are multiples.
+def _common_power_of_ten(position_numbers: Array) -> float:
+    """Largest power of ten, at most 1, of which all numbers are multiples: the unit of their last digit.
 
-    This power of ten is the unit of their last digit.
     0 if the largest number is more than MAX_POSITION_OVER_LAST_DIGIT times that power.
     """
-    largest = float(np.abs(numbers).max())
+    largest = float(np.abs(position_numbers).max())
     for power in range(0, -16, -1):
-        scaled = numbers * 10.0**-power
+        scaled = position_numbers * 10.0**-power
         if largest * 10.0**-power > MAX_POSITION_OVER_LAST_DIGIT:
             break
         if np.abs(scaled - np.rint(scaled)).max() < 1e-6:
@@ -185,7 +186,7 @@ def _common_power_of_ten(numbers: Array) -> float:
     return 0.0
 
 
-MAX_CHECKED_SIZE = 2**22
+MAX_CHECKED_FILE_SIZE = 2**22
 """Largest size [bytes] of a text file in which the check counts the numbers."""
 NON_SURFACE_SIGNATURES = {
     b"\x89PNG": "a PNG picture",
@@ -201,42 +202,43 @@ SUFFIXES_WITH_SIGNATURE = (
     *("opd", "os3d", "qep", "sdf", "sur", "tmd", "vk3", "vk4", "vk6", "vk7", "x3p", "zmg", "zon"),
 )
 """Suffixes of formats of SurfaceTopography that begin with a known signature."""
-FORMAT_SIGNATURES = (
+SCAN_FORMAT_SIGNATURES = (
     *(b"aISO-1.0", b"bISO-1.0", b"\x01\xb0\x93\xff", b"PK\x03\x04", b"fileType", b"CDF", b"\x89HDF"),
     *(b"\x93NUMPY", b"II*\0", b"MM\0*", b"DIGITAL SURF", b"DSCOMPRESSED", b"Binary TrueMap", b"VK"),
     *(b"Zeta-Instruments", b"KPK", b"OmniSurf3D", b"AliconaImaging", b"fileformat = bcr", b"f\0i\0l\0e"),
     *(b"\xff\xfef\0i", b"\xfe\xff\0f\0i", b"\x88\x1b\x03", b"GWY", b"FRTM_GLIDERV", b"WSxM file copyright"),
 )
 """Signatures (first bytes) of the known formats; the signature of Wyko OPD begins at the third byte."""
-_NUMBER_PATTERN = re.compile(rb"\d+")
+_NUMBER_BYTES_PATTERN = re.compile(rb"\d+")
 """Pattern of a number in the bytes of a file."""
 
 
-def check_surface_file(path: Path) -> None:
+def check_surface_file(scan_path: Path) -> None:
     """Raise ValueError (one line) if a file is no surface, by its first bytes or by too few numbers."""
-    with path.open("rb") as file:
+    with scan_path.open("rb") as file:
         start = file.read(64)
     if kind := next(
         (text for signature, text in NON_SURFACE_SIGNATURES.items() if start.startswith(signature)), None
     ):
-        raise ValueError(f"{path}: is not a surface scan: it is {kind}")
-    if path.suffix[1:].lower() in SUFFIXES_WITH_SIGNATURE and not has_signature(start):
+        raise ValueError(f"{scan_path}: is not a surface scan: it is {kind}")
+    if scan_path.suffix[1:].lower() in SUFFIXES_WITH_SIGNATURE and not has_scan_signature(start):
         raise ValueError(
-            f"{path}: is not a surface scan: it does not begin as a {path.suffix} file, nor as any other"
+            f"{scan_path}: is not a surface scan: it has not the content of a {scan_path.suffix} file or "
+            "another scan"
         )
-    if path.stat().st_size > MAX_CHECKED_SIZE:
+    if scan_path.stat().st_size > MAX_CHECKED_FILE_SIZE:
         return
-    data = path.read_bytes()
+    data = scan_path.read_bytes()
     if (
-        not CONTROL_CHARACTERS.search(data)
-        and (count := len(_NUMBER_PATTERN.findall(data))) < MIN_PROFILE_POINTS
+        not CONTROL_CHARACTER_PATTERN.search(data)
+        and (count := len(_NUMBER_BYTES_PATTERN.findall(data))) < MIN_PROFILE_POINTS
     ):
         raise ValueError(
-            f"{path}: is not a surface scan: a text of {count} numbers, "
-            f"a profile needs at least {MIN_PROFILE_POINTS} points"
+            f"{scan_path}: is not a surface scan: a text of {count} numbers, a profile needs at least "
+            f"{MIN_PROFILE_POINTS} points"
         )
 
 
-def has_signature(first_bytes: bytes) -> bool:
+def has_scan_signature(first_bytes: bytes) -> bool:
     """Whether the first bytes of a file are the signature of a known format of instruments."""
-    return first_bytes.startswith(FORMAT_SIGNATURES) or first_bytes[2:].startswith(b"Directory")
+    return first_bytes.startswith(SCAN_FORMAT_SIGNATURES) or first_bytes[2:].startswith(b"Directory")

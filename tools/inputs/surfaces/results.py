@@ -11,17 +11,17 @@ from jointfmu.quantity import Array
 
 from ...common import plots
 from ..fractal import second_difference_ratio
-from .bearing_curve import MAX_GAUSSIAN_TAIL_OVER_RMS_HEIGHT, BearingCurve, HeightSample, tail_ratio
+from .bearing_curve import MAX_GAUSSIAN_TAIL_OVER_RMS_HEIGHT, BearingCurve, HeightSample, tail_over_rms_height
 from .fit import SelfAffineLaw
-from .form import Repair, ScanRoughness
+from .form import ScanRepair, ScanRoughness
 from .heights import ArealMap
-from .spectrum import ScaleSeries, structure_power_law
+from .spectrum import ScaleSeries, second_difference_power_law
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-TEXTURE_THRESHOLD = 0.3
+MIN_LINE_SIMILARITY_OF_TEXTURE = 0.3
 """Mean square of the average line of a map over that of single lines [1], above which it is textured."""
 
 
@@ -29,17 +29,17 @@ TEXTURE_THRESHOLD = 0.3
 class Estimate:
     """Estimated value of a surface parameter, with the limits of its confidence interval."""
 
-    value: float
-    low: float
-    high: float
+    estimated_value: float
+    interval_low: float
+    interval_high: float
 
 
 @dataclass(frozen=True, slots=True)
-class RoughnessEstimate(Estimate):
-    """Estimated roughness G [m] with its confidence interval, from logarithms.
+class FractalRoughnessEstimate(Estimate):
+    """Estimated fractal roughness G [m] with its confidence interval, from logarithms.
 
-    As D approaches 1, the interval spans hundreds of decades. If it exceeds the range of positive
-    floating-point numbers, G is not determined: value, low and high are nan.
+    As the fractal dimension D approaches 1, the interval spans hundreds of decades. If it exceeds the range
+    of positive floating-point numbers, G is not determined: value and limits are nan.
 
     interval_decades : length of the interval [decades], whether or not G is determined
     """
@@ -48,33 +48,40 @@ class RoughnessEstimate(Estimate):
 
     @property
     def is_determined(self) -> bool:
-        """Whether the whole interval is in the range of positive floating-point numbers."""
-        return bool(np.isfinite(self.value))
+        """Whether the confidence interval of G is within the range of positive floating-point numbers."""
+        return bool(np.isfinite(self.estimated_value))
 
     @classmethod
-    def from_logarithms(cls, value: float, low: float, high: float) -> "RoughnessEstimate":
+    def from_logarithms(
+        cls, log_value: float, log_interval_low: float, log_interval_high: float
+    ) -> "FractalRoughnessEstimate":
         """Estimate from the natural logarithms of the value and of the limits of its interval."""
-        decades = (high - low) / np.log(10.0)
+        decades = (log_interval_high - log_interval_low) / np.log(10.0)
         smallest, largest = np.log([np.finfo(float).tiny, np.finfo(float).max])
-        if not smallest <= min(value, low) <= max(value, high) <= largest:
+        if not smallest <= min(log_value, log_interval_low) <= max(log_value, log_interval_high) <= largest:
             return cls(np.nan, np.nan, np.nan, float(decades))
-        return cls(float(np.exp(value)), float(np.exp(low)), float(np.exp(high)), float(decades))
+        return cls(
+            float(np.exp(log_value)),
+            float(np.exp(log_interval_low)),
+            float(np.exp(log_interval_high)),
+            float(decades),
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProfileFractal:
-    """Fractal parameters of a profile, 1 < D < 2 (Zhao 2018, Yu 2022)."""
+    """Fractal dimension D and roughness G of a profile, 1 < D < 2 (Zhao 2018, Yu 2022)."""
 
     D: Estimate
-    G: RoughnessEstimate
+    G: FractalRoughnessEstimate
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArealFractal:
-    """Fractal parameters of an isotropic surface, 2 < D_s < 3 (Hu 2023, Eq. 1)."""
+    """Fractal dimension D_s and roughness G_s of an isotropic surface, 2 < D_s < 3 (Hu 2023, Eq. 1)."""
 
     D_s: Estimate
-    G_s: RoughnessEstimate
+    G_s: FractalRoughnessEstimate
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -83,129 +90,143 @@ class FractalResult:
 
     The direction is "profile", "x", "y" or "areal".
 
-    series  : structure function or spectrum over scale
-    fit     : self-affine law fitted to the series
-    profile : fractal parameters of the profile
-    areal   : fractal parameters of the surface
+    scale_series    : structure function or spectrum over lag or wavelength
+    fitted_law      : self-affine law fitted to the series
+    profile_fractal : fractal parameters of the profile
+    areal_fractal   : fractal parameters of the surface
     """
 
-    method: str
-    direction: str
-    series: ScaleSeries
-    fit: SelfAffineLaw
-    profile: ProfileFractal
-    areal: ArealFractal
+    series_method: str
+    scan_direction: str
+    scale_series: ScaleSeries
+    fitted_law: SelfAffineLaw
+    profile_fractal: ProfileFractal
+    areal_fractal: ArealFractal
 
 
 @dataclass(frozen=True, slots=True)
-class Identification:
-    """Identified parameters of one surface, or of the equivalent surface of two.
+class SurfaceIdentification:
+    """Identified fractal parameters and roughness of one surface, or of the equivalent surface of two.
 
-    file_names  : names of the files
-    results     : results of all methods and directions
-    repairs     : (file, repair) of all repairs
-    warnings    : messages for the user
-    is_textured : whether a surface is textured (not isotropic)
-    scans       : roughness of each file
-    gap         : sample of the gap heights of the measured sides
-    gap_parts   : samples of the gap heights, one for each part of the scans
-    side        : for a single surface, its side of the contact, one of SCAN_SIDES; None: not given
+    file_names       : names of the files
+    fractal_results  : results of all methods and directions
+    scan_repairs     : (file, repair) of all repairs
+    warnings         : messages for the user
+    is_textured      : whether a surface is textured (not isotropic)
+    scan_roughnesses : roughness of each file
+    gap_sample       : heights and slopes of the gap between the measured sides
+    gap_part_samples : heights and slopes of the gap, one sample for each part of the scans
+    contact_side     : for a single surface, its side of the contact, one of CONTACT_SIDES; None: not given
     """
 
     file_names: tuple[str, ...]
-    results: tuple[FractalResult, ...]
-    repairs: tuple[tuple[str, Repair], ...]
+    fractal_results: tuple[FractalResult, ...]
+    scan_repairs: tuple[tuple[str, ScanRepair], ...]
     warnings: tuple[str, ...]
     is_textured: bool
-    scans: tuple[ScanRoughness, ...]
-    gap: HeightSample
-    gap_parts: tuple[HeightSample, ...]
-    side: str | None = None
+    scan_roughnesses: tuple[ScanRoughness, ...]
+    gap_sample: HeightSample
+    gap_part_samples: tuple[HeightSample, ...]
+    contact_side: str | None = None
 
     @property
     def roughness_by_side(self) -> dict[int, ScanRoughness]:
         """{side 1 or 2: roughness} of the measured sides; a single scan without a given side is side 1."""
-        if len(self.scans) == 2 or self.side == "both":
-            return {1: self.scans[0], 2: self.scans[-1]}
-        return {int(self.side or 1): self.scans[0]}
+        if len(self.scan_roughnesses) == 2 or self.contact_side == "both":
+            return {1: self.scan_roughnesses[0], 2: self.scan_roughnesses[-1]}
+        return {int(self.contact_side or 1): self.scan_roughnesses[0]}
 
     @property
-    def h(self) -> float:
+    def combined_rms_height(self) -> float:
         """Combined rms height [m] of both sides for waves up to longest_wave; unmeasured sides are smooth."""
-        return float(np.sqrt(sum(scan.h**2 for scan in self.roughness_by_side.values())))
+        return float(np.sqrt(sum(scan.long_wave_rms_height**2 for scan in self.roughness_by_side.values())))
 
     @property
     def bearing_curve(self) -> BearingCurve:
         """Bearing curve of the gap of the measured sides."""
-        return BearingCurve.of_sample(self.gap)
+        return BearingCurve.from_height_sample(self.gap_sample)
 
     @property
-    def tail_ratio(self) -> float:
-        """Rms height of Gaussian heights with the same upper tail as the gap, over the rms gap height [1]."""
-        return tail_ratio(self.gap)
+    def tail_over_rms_height(self) -> float:
+        """Ratio [1] of two rms heights: Gaussian heights with the same upper tail as the gap, and the gap."""
+        return tail_over_rms_height(self.gap_sample)
 
     @property
     def is_gaussian(self) -> bool:
         """Whether the upper tail agrees with Gaussian heights; also true if parts of the scan disagree."""
-        ratios = [self.tail_ratio, *map(tail_ratio, self.gap_parts)]
+        ratios = [self.tail_over_rms_height, *map(tail_over_rms_height, self.gap_part_samples)]
         return not (
             max(ratios) < 1.0 / MAX_GAUSSIAN_TAIL_OVER_RMS_HEIGHT
             or min(ratios) > MAX_GAUSSIAN_TAIL_OVER_RMS_HEIGHT
         )
 
     @property
-    def slope(self) -> float:
+    def combined_rms_slope(self) -> float:
         """Combined rms slope [1] of both sides; an unmeasured side is smooth."""
-        return float(np.sqrt(sum(scan.slope**2 for scan in self.roughness_by_side.values())))
+        return float(np.sqrt(sum(scan.rms_slope**2 for scan in self.roughness_by_side.values())))
 
     @property
     def longest_wave(self) -> float:
         """Longest wavelength [m] that contributes to the combined rms height h and slope."""
-        return self.scans[0].longest_wave
+        return self.scan_roughnesses[0].longest_wave
 
-    def select_best_result(self, direction: str | None = None, method: str | None = None) -> FractalResult:
+    def select_best_result(
+        self, scan_direction: str | None = None, series_method: str | None = None
+    ) -> FractalResult:
         """Select the best result in a direction (None: any): self-affine, smallest standard error of D.
 
         A result with D at an end of its interval comes last, because its standard error is not valid.
         """
-        candidates = [r for r in self.select_results_in_direction(direction) if method in (None, r.method)]
+        candidates = [
+            r
+            for r in self.select_results_in_direction(scan_direction)
+            if series_method in (None, r.series_method)
+        ]
         return min(
-            candidates, key=lambda r: (r.fit.is_at_bound, not r.fit.is_self_affine, r.fit.covariance[0, 0])
+            candidates,
+            key=lambda r: (
+                r.fitted_law.is_at_bound,
+                not r.fitted_law.is_self_affine,
+                r.fitted_law.parameter_covariance[0, 0],
+            ),
         )
 
-    def select_results_in_direction(self, direction: str | None = None) -> list[FractalResult]:
+    def select_results_in_direction(self, scan_direction: str | None = None) -> list[FractalResult]:
         """Select the results of all methods in a direction (None: the whole surface)."""
-        direction = direction or self.results[0].direction
-        return [r for r in self.results if r.direction == direction]
+        scan_direction = scan_direction or self.fractal_results[0].scan_direction
+        return [r for r in self.fractal_results if r.scan_direction == scan_direction]
 
-    def undetermined_reason(self, direction: str | None = None) -> str | None:
-        """Reason why D and G in a direction are not determined; None if they are.
+    def undetermined_reason(self, scan_direction: str | None = None) -> str | None:
+        """Reason why fractal dimension D and roughness G in a direction are not determined; None if they are.
 
         D and G are determined if the surface is self-affine by all methods with D inside of its interval, if
         the confidence intervals of D overlap, and if G is determined.
         """
-        results = self.select_results_in_direction(direction)
+        results = self.select_results_in_direction(scan_direction)
         for result in results:
-            D = result.profile.D.value
-            if result.fit.is_at_bound:
-                return f"D = {D:.2f} ({result.method}) lies at the end of 1 to 2"
-            if not result.fit.is_self_affine:
-                return f"not self-affine ({result.method})"
-        if max(r.profile.D.low for r in results) > min(r.profile.D.high for r in results):
+            D = result.profile_fractal.D.estimated_value
+            if result.fitted_law.is_at_bound:
+                return f"D = {D:.2f} ({result.series_method}) lies at the end of 1 to 2"
+            if not result.fitted_law.is_self_affine:
+                return f"not self-affine ({result.series_method})"
+        if max(r.profile_fractal.D.interval_low for r in results) > min(
+            r.profile_fractal.D.interval_high for r in results
+        ):
             values = ", ".join(
-                f"{r.profile.D.value:.2f} [{r.profile.D.low:.2f}, {r.profile.D.high:.2f}] ({r.method})"
+                f"{r.profile_fractal.D.estimated_value:.2f} [{r.profile_fractal.D.interval_low:.2f}, "
+                f"{r.profile_fractal.D.interval_high:.2f}] ({r.series_method})"
                 for r in results
             )
             return f"the methods disagree, D = {values}"
-        G = self.select_best_result(direction).profile.G
+        G = self.select_best_result(scan_direction).profile_fractal.G
         return None if G.is_determined else f"the interval of G spans {G.interval_decades:.0f} decades"
 
 
-def mean_line_shares(heights: ArealMap) -> tuple[float, float]:
-    """Mean square of a map's average line over the mean square of its single lines [1], along x and along y.
+def compute_line_similarity(heights: ArealMap) -> tuple[float, float]:
+    """Similarity [1] of the lines of a map, along x and along y: near 0 if isotropic, 1 if all are equal.
 
-    The squares are taken of second differences. The result is near 0 for an isotropic surface, and 1 if all
-    lines are equal.
+    Each value is the mean square of the second differences of the average line, divided by that of the single
+    lines [1].
     """
     shares = []
     for z in (heights.z, heights.z.T):
@@ -216,8 +237,8 @@ def mean_line_shares(heights: ArealMap) -> tuple[float, float]:
     return shares[0], shares[1]
 
 
-def list_warnings(fractal_results: Sequence[FractalResult], is_textured: bool) -> list[str]:
-    """Warnings for the user about the results of one surface.
+def list_identification_warnings(fractal_results: Sequence[FractalResult], is_textured: bool) -> list[str]:
+    """Warnings for the user about the fractal parameters of one surface.
 
     fractal_results : results of all directions and methods; the first two are of the whole surface
     """
@@ -228,33 +249,45 @@ def list_warnings(fractal_results: Sequence[FractalResult], is_textured: bool) -
             "it, use D and G along x and y"
         )
     for result in fractal_results:
-        label = f"{result.method}, {result.direction}"
-        if not (result.fit.is_self_affine or result.fit.drift_covers_dimensions):
+        label = f"{result.series_method}, {result.scan_direction}"
+        if not (result.fitted_law.is_self_affine or result.fitted_law.is_range_too_short_for_drift):
             lines.append(
-                f"{label}: not self-affine over {result.fit.min_scale:.3g} to "
-                f"{result.fit.max_scale:.3g} m: D drifts by "
-                f"{result.fit.dimension_drift:+.2f}, deviation from the law "
-                f"{100.0 * result.fit.excess_deviation:.0f} %"
+                f"{label}: not self-affine over {result.fitted_law.min_scale:.3g} to "
+                f"{result.fitted_law.max_scale:.3g} m: D drifts by "
+                f"{result.fitted_law.dimension_drift:+.2f}, deviation from the power law "
+                f"{100.0 * result.fitted_law.excess_deviation:.0f} %"
             )
-        if result.fit.range_decades < 1.0:
-            lines.append(f"{label}: the range spans {result.fit.range_decades:.2f} decades, less than one")
-        if result.fit.drift_covers_dimensions:
+        if result.fitted_law.range_decades < 1.0:
             lines.append(
-                f"{label}: over all scales D runs through its interval from 1 to 2, and only a piece of "
-                f"{result.fit.range_decades:.2f} decades is straight; state a range to take it"
+                f"{label}: the range spans {result.fitted_law.range_decades:.2f} decades, expected at least "
+                "one"
             )
-        if result.fit.is_at_bound:
-            lines.append(f"{label}: D = {result.profile.D.value:.2f} lies at the end of 1 to 2; no fractal")
-    G = min(fractal_results[:2], key=lambda result: result.fit.covariance[0, 0]).profile.G
+        if result.fitted_law.is_range_too_short_for_drift:
+            lines.append(
+                f"{label}: D changes from 1 to 2 over all scales, and only "
+                f"{result.fitted_law.range_decades:.2f} decades follow a power law; state a range to use "
+                "them"
+            )
+        if result.fitted_law.is_at_bound:
+            lines.append(
+                f"{label}: D = {result.profile_fractal.D.estimated_value:.2f} is at the end of 1 to 2: no "
+                "fractal surface"
+            )
+    G = min(
+        fractal_results[:2], key=lambda result: result.fitted_law.parameter_covariance[0, 0]
+    ).profile_fractal.G
     if G.interval_decades > 4.0:
         lines.append(
             f"G is {'hardly' if G.is_determined else 'not'} determined: its interval spans "
-            f"{G.interval_decades:.1f} "
-            "decades; a larger patch or more decades are needed"
+            f"{G.interval_decades:.1f} decades; measure a larger patch, or more decades"
         )
-    structures, spectra = fractal_results[0].profile.D, fractal_results[1].profile.D
-    if structures.low > spectra.high or spectra.low > structures.high:
-        lines.append(f"the methods disagree: D = {structures.value:.3f} and {spectra.value:.3f}")
+    structures, spectra = fractal_results[0].profile_fractal.D, fractal_results[1].profile_fractal.D
+    if structures.interval_low > spectra.interval_high or spectra.interval_low > structures.interval_high:
+        lines.append(
+            f"the methods disagree: D = {structures.estimated_value:.3f} "
+            f"({fractal_results[0].series_method}) and {spectra.estimated_value:.3f} "
+            f"({fractal_results[1].series_method}); state a range where both follow a power law"
+        )
     return lines
 
 
@@ -262,53 +295,62 @@ DIRECTION_COLOURS = {"profile": plots.BLUE, "areal": plots.BLUE, "x": plots.RED,
 """{direction of a result: colour in the plot}."""
 
 
-def draw_identification(identified_surface: Identification, path: str | Path) -> None:
+def draw_identification(identified_surface: SurfaceIdentification, picture_path: str | Path) -> None:
     """Plot structure functions and spectra with the fitted laws, as .png or .svg."""
-    with plots.open_figure(path, (9.6, 5.0)) as figure:
+    with plots.open_figure(picture_path, (9.6, 5.0)) as figure:
         axes = dict(zip(("structure", "psd"), figure.subplots(1, 2), strict=True))
-        for result in identified_surface.results:
-            _draw_result(axes[result.method], result)
+        for result in identified_surface.fractal_results:
+            _draw_fractal_result(axes[result.series_method], result)
         axes["structure"].set_title("structure function", loc="left")
         axes["structure"].set_xlabel("lag τ [m]")
         axes["structure"].set_ylabel("S(τ) [m²]")
         axes["psd"].set_title("power spectral density, one-sided", loc="left")
         axes["psd"].set_xlabel("frequency ω [1/m]")
         axes["psd"].set_ylabel("P(ω) [m³]")
-        label = f"h = {1e6 * identified_surface.h:.3g} µm: all waves to the right"
+        label = f"h = {1e6 * identified_surface.combined_rms_height:.3g} µm: all waves to the right"
         axes["psd"].axvline(
             1.0 / identified_surface.longest_wave, color=plots.GREY, ls="--", lw=1.0, label=label
         )
         for panel in axes.values():
             panel.set_xscale("log")
             panel.set_yscale("log")
-            _set_ticks(panel.xaxis)
-            _set_ticks(panel.yaxis)
+            _set_log_axis_ticks(panel.xaxis)
+            _set_log_axis_ticks(panel.yaxis)
             panel.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.14))
 
 
-def _draw_result(axes: "Axes", fractal_result: FractalResult) -> None:
+def _draw_fractal_result(axes: "Axes", fractal_result: FractalResult) -> None:
     """Plot one result: all data, data in the range of the fit, and the fitted law."""
     x, y, law = _plot_data(fractal_result)
-    inside = (fractal_result.series.scale >= fractal_result.fit.min_scale * 0.999) & (
-        fractal_result.series.scale <= fractal_result.fit.max_scale * 1.001
-    )
-    colour = DIRECTION_COLOURS[fractal_result.direction]
+    inside = (
+        fractal_result.scale_series.lag_or_wavelength >= fractal_result.fitted_law.min_scale * 0.999
+    ) & (fractal_result.scale_series.lag_or_wavelength <= fractal_result.fitted_law.max_scale * 1.001)
+    colour = DIRECTION_COLOURS[fractal_result.scan_direction]
     D, low, high = (
-        (fractal_result.areal.D_s.value, fractal_result.areal.D_s.low, fractal_result.areal.D_s.high)
-        if fractal_result.direction == "areal"
-        else (fractal_result.profile.D.value, fractal_result.profile.D.low, fractal_result.profile.D.high)
+        (
+            fractal_result.areal_fractal.D_s.estimated_value,
+            fractal_result.areal_fractal.D_s.interval_low,
+            fractal_result.areal_fractal.D_s.interval_high,
+        )
+        if fractal_result.scan_direction == "areal"
+        else (
+            fractal_result.profile_fractal.D.estimated_value,
+            fractal_result.profile_fractal.D.interval_low,
+            fractal_result.profile_fractal.D.interval_high,
+        )
     )
-    name = "D_s" if fractal_result.direction == "areal" else "D"
+    name = "D_s" if fractal_result.scan_direction == "areal" else "D"
     label = (
-        f"{fractal_result.direction}: {name} = {D:.3f} ({low:.3f} to {high:.3f}), "
-        f"{1e6 * fractal_result.fit.min_scale:.3g} to {1e6 * fractal_result.fit.max_scale:.3g} µm"
+        f"{fractal_result.scan_direction}: {name} = {D:.3f} ({low:.3f} to {high:.3f}), "
+        f"{1e6 * fractal_result.fitted_law.min_scale:.3g} to "
+        f"{1e6 * fractal_result.fitted_law.max_scale:.3g} µm"
     )
     axes.plot(x, y, "o", ms=3.5, mfc="none", color=colour, alpha=0.5)
     axes.plot(x[inside], y[inside], "o", ms=3.5, color=colour)
     axes.plot(x[inside], law[inside], "-", lw=1.2, color=colour, label=label)
 
 
-def _set_ticks(axis: Any) -> None:
+def _set_log_axis_ticks(axis: Any) -> None:
     """Set tick labels of a logarithmic axis: at 1, 2, 5 in each decade below two decades, else at decades."""
     from matplotlib.ticker import LogFormatterSciNotation, LogLocator, NullFormatter
 
@@ -326,17 +368,25 @@ def _plot_data(fractal_result: FractalResult) -> tuple[Array, Array, Array]:
     function is V/(4 - 4^H), with the second difference V of the heights, from which a tilt of the surface
     cancels.
     """
-    series, fit = fractal_result.series, fractal_result.fit
+    series, fit = fractal_result.scale_series, fractal_result.fitted_law
     expected = series.expected_value(fit.H)
-    is_structure = series.method == "structure"
-    unsmoothed = structure_power_law(series.scale, fit.H) if is_structure else series.scale ** (2.0 * fit.H)
-    first = expected[np.argmin(np.abs(series.scale - fit.min_scale))]
+    is_structure = series.series_method == "structure"
+    unsmoothed = (
+        second_difference_power_law(series.lag_or_wavelength, fit.H)
+        if is_structure
+        else series.lag_or_wavelength ** (2.0 * fit.H)
+    )
+    first = expected[np.argmin(np.abs(series.lag_or_wavelength - fit.min_scale))]
     law = (
-        np.exp(fit.log_power)
+        np.exp(fit.log_height_variance)
         * fit.reference_wavelength ** (-2.0 * fit.H)
         * (expected + fit.relative_offset * first)
     )
-    data, law = series.value * unsmoothed / expected, law * unsmoothed / expected
+    data, law = series.smoothed_value * unsmoothed / expected, law * unsmoothed / expected
     if is_structure:
-        return series.scale, data / second_difference_ratio(fit.H), law / second_difference_ratio(fit.H)
-    return 1.0 / series.scale, data * series.scale, law * series.scale
+        return (
+            series.lag_or_wavelength,
+            data / second_difference_ratio(fit.H),
+            law / second_difference_ratio(fit.H),
+        )
+    return 1.0 / series.lag_or_wavelength, data * series.lag_or_wavelength, law * series.lag_or_wavelength

@@ -9,24 +9,28 @@ from jointfmu.parameters import load_default
 from ...studies.published.reference import compute_trivial_guesses, read_points
 from ...studies.published.validation import ValidatedPoint, compare_point
 
-REFERENCE_FILE = "zhao2018_modes"
+PUBLISHED_FREQUENCIES_FILE = "zhao2018_modes"
 """File of published numbers in models/reference/. `where` of each number gives `preload` [N] per bolt,
 `moment` [N.m] about x and `mode`, counted from 1."""
-ASSEMBLY_FILE = Path(str(files("jointfmu_models") / "assemblies" / "box_specimen_by_frequency.toml"))
+BOX_SPECIMEN_ASSEMBLY_FILE = Path(
+    str(files("jointfmu_models") / "assemblies" / "box_specimen_by_frequency.toml")
+)
 """Assembly file of the box specimen."""
 
 
 def compare_natural_frequencies() -> list[ValidatedPoint]:
-    """Compare the measured frequencies with finite elements; takes half a minute.
+    """Compare the measured natural frequencies of the box specimen with finite elements; takes half a minute.
 
     Raises ImportError without the extra `fem`.
     """
     from ...fem import assembly, modes
 
-    published, values = read_points(REFERENCE_FILE), load_default(KIND.name).values
+    published, values = read_points(PUBLISHED_FREQUENCIES_FILE), load_default(KIND.name).values
     states = list(dict.fromkeys((p.where["preload"], p.where["moment"]) for p in published))
     shear = float(values.shear_stiffness_ratio())
-    computed = modes.compute_frequencies(assembly.read_assembly(ASSEMBLY_FILE), values, shear, states)
+    computed = modes.compute_frequencies(
+        assembly.read_assembly(BOX_SPECIMEN_ASSEMBLY_FILE), values, shear, states
+    )
     by_state = dict(zip(states, computed.tolist(), strict=True))
     matching = [by_state[p.where["preload"], p.where["moment"]][p.where["mode"] - 1] for p in published]
     guessed = compute_trivial_guesses(published)

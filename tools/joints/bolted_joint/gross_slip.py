@@ -15,7 +15,7 @@ from jointfmu.joints.bolted_joint.law import (
 )
 from jointfmu.parameters import ParameterFile
 
-PRELOAD_ENTRY = "inputs.preload"
+PRELOAD_ENTRY_NAME = "inputs.preload"
 """Entry of the preload in a parameter file."""
 REPORTED_SHEAR_OVER_SLIP_FORCE = 0.1
 """Shear force over the gross-slip force [1] at which the loss factor is reported."""
@@ -24,18 +24,20 @@ REPORTED_SHEAR_OVER_SLIP_FORCE = 0.1
 class FrictionResult(NamedTuple):
     """Gross-slip force and loss factor of a bolted joint for one friction coefficient.
 
-    mu          : friction coefficient [1]
-    slip_force  : shear force [N] of gross slip
-    loss_factor : [1] of a loop with a given amplitude of the shear force
+    friction_coefficient : friction coefficient [1]
+    slip_force           : shear force [N] of gross slip
+    loss_factor          : [1] of a loop with a given amplitude of the shear force
     """
 
-    mu: float
+    friction_coefficient: float
     slip_force: float
     loss_factor: float
 
 
-def friction_results(parameter_file: ParameterFile, preload: float) -> tuple[float, list[FrictionResult]]:
-    """Gross-slip force and loss factor for mu of the file and both ends of its range, at a preload [N].
+def compute_friction_results(
+    parameter_file: ParameterFile, preload: float
+) -> tuple[float, list[FrictionResult]]:
+    """Compute gross-slip force and loss factor at a preload [N], for the friction coefficient and its range.
 
     Returns the amplitude [N] of the shear force, then one FrictionResult per mu. The loss factors are those
     of the interface between rigid sides, all at this amplitude.
@@ -46,23 +48,23 @@ def friction_results(parameter_file: ParameterFile, preload: float) -> tuple[flo
     rows = []
     for mu in (joint.mu, *parameter_file.ranges.get("mu", ())):
         other = replace(joint, mu=mu)
-        loss = loss_factor(BoltedJointSpring.for_joint(other), remaining_preload, shear)
+        loss = loss_factor(BoltedJointSpring.from_joint(other), remaining_preload, shear)
         rows.append(FrictionResult(mu, float(slip_force(other, remaining_preload)), loss))
     return shear, rows
 
 
-def loss_factor(spring: BoltedJointSpring, remaining_preload: float, shear_amplitude: float) -> float:
+def loss_factor(joint_spring: BoltedJointSpring, remaining_preload: float, shear_amplitude: float) -> float:
     """Loss factor [1]: dissipated energy over 2 pi times the stored energy, in a loop of the shear force.
 
     remaining_preload : [N] of each bolt after embedding; without a moment
     shear_amplitude   : amplitude [N] of the shear force
     """
-    joint, shape = spring.joint, spring.patches
-    law, mean = spring.friction_law.foundation(), remaining_preload * joint.n_bolts / joint.A_0
-    approach = spring.curve.inverse(
+    joint, shape = joint_spring.joint, joint_spring.patches
+    law, mean = joint_spring.friction_law.foundation(), remaining_preload * joint.n_bolts / joint.A_0
+    approach = joint_spring.curve.inverse(
         superposed_pressure(shape.preload_pressure_ratio, shape.moment_pressure_ratio, mean, 0.0)
     )
-    low, size = 0.0, float(np.max(approach - spring.curve.displacement[0]))
+    low, size = 0.0, float(np.max(approach - joint_spring.curve.displacement[0]))
     size *= law.friction_coefficient / law.stiffness_ratio
     for _ in range(12):  # each reduces the interval to 1/32, down to round-off
         sizes = np.linspace(low, size, 33)
@@ -91,15 +93,15 @@ class PreloadResult(NamedTuple):
     opening_load: float
 
 
-def preload_results(parameter_file: ParameterFile) -> list[PreloadResult]:
-    """Results at the start value of the preload, and at both ends of its range.
+def compute_preload_results(parameter_file: ParameterFile) -> list[PreloadResult]:
+    """Compute stiffness, slip force and opening load at the preload and at both ends of its range.
 
     The temperature is its start value. A preload that embedding and temperature take completely is left out.
     """
     joint = parameter_file.values
-    spring = BoltedJointSpring.for_joint(joint)
+    spring = BoltedJointSpring.from_joint(joint)
     rows = []
-    preloads = (parameter_file.start_value("preload"), *parameter_file.ranges.get(PRELOAD_ENTRY, ()))
+    preloads = (parameter_file.start_value("preload"), *parameter_file.ranges.get(PRELOAD_ENTRY_NAME, ()))
     for preload in preloads:
         warm_preload = preload_at_temperature(joint, preload, parameter_file.start_value("temperature"))
         remaining_preload = float(working_preload(joint, warm_preload))

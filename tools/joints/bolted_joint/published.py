@@ -19,50 +19,56 @@ from ...inputs.fractal import rms_height
 from ...studies.published.computed import CalibrationFit, PublishedNumbers
 
 
-def largest_pressure(joint: BoltedJointParameters, preload: float) -> float:
+def largest_pressure(joint_parameters: BoltedJointParameters, preload: float) -> float:
     """Largest nodal contact pressure [Pa] of the box specimen at a preload [N] per bolt."""
-    return float(np.max(preload_pressure(joint, pressure_distribution(joint.pattern), preload, 0.0)))
+    return float(
+        np.max(
+            preload_pressure(joint_parameters, pressure_distribution(joint_parameters.pattern), preload, 0.0)
+        )
+    )
 
 
-def pressure_between_bolts(joint: BoltedJointParameters, preload: float) -> float:
+def pressure_between_bolts(joint_parameters: BoltedJointParameters, preload: float) -> float:
     """Pressure [Pa] midway between a corner bolt and the next bolt of the other row.
 
     preload : [N] per bolt
     """
-    pattern = get_bolted_frame(joint)
+    pattern = get_bolted_frame(joint_parameters)
     areas, nodes = frame_cells(pattern)
-    middle = pattern.bolts_from_middle[[0, 3]].mean(axis=0)[None, :]
+    middle = pattern.bolt_positions_from_middle[[0, 3]].mean(axis=0)[None, :]
     unit = float(bolt_pressures(pattern, areas, nodes, middle).sum())
-    return unit * preload * joint.n_bolts / 8.0 * float(areas.sum()) / joint.A_0
+    return unit * preload * joint_parameters.n_bolts / 8.0 * float(areas.sum()) / joint_parameters.A_0
 
 
-def row_force(joint: BoltedJointParameters, preload: float, moment: float, row: int) -> float:
-    """Force [N] of a bolt in row 1 or 2, at a preload [N] per bolt and a moment [N.m]."""
-    return row_forces(joint, preload, moment)[row - 1]
+def bolt_row_force(joint_parameters: BoltedJointParameters, preload: float, moment: float, row: int) -> float:
+    """Force [N] of a bolt in row 1 or 2 of the joint, at a preload [N] per bolt and a moment [N.m]."""
+    return row_forces(joint_parameters, preload, moment)[row - 1]
 
 
-def critical_area(joint: BoltedJointParameters, choice: str) -> float:
-    """Critical area a'_c [m2] of a contact spot, by the equation that `choice` selects."""
-    return float(zhao.critical_area(replace(joint, critical_area=choice)))
+def critical_area(joint_parameters: BoltedJointParameters, choice: str) -> float:
+    """Critical area [m2] of a contact spot by the equation `choice`: smaller spots are plastic."""
+    return float(zhao.critical_area(replace(joint_parameters, critical_area=choice)))
 
 
-def spot_stiffness_ratio(joint: BoltedJointParameters) -> float:
-    """Stiffness of a contact spot by the choice `family` over its stiffness by the choice `hertz` [1]."""
+def spot_stiffness_ratio(joint_parameters: BoltedJointParameters) -> float:
+    """Normal stiffness of a contact spot by the equation `family` over that by the equation `hertz` [1]."""
     family, hertz = (
-        zhao.normal_stiffness(replace(joint, spot_stiffness=kind), 1e-6) for kind in ("family", "hertz")
+        zhao.normal_stiffness(replace(joint_parameters, spot_stiffness=kind), 1e-6)
+        for kind in ("family", "hertz")
     )
     return float(family / hertz)
 
 
-def surface_rms_height(joint: BoltedJointParameters, longest_wave: float) -> float:
-    """Rms height h [m] of the fractal surface (D, G) with wavelengths up to `longest_wave` [m]."""
-    return float(rms_height(joint.surface.D, joint.surface.G, longest_wave))
+def surface_rms_height(joint_parameters: BoltedJointParameters, longest_wave: float) -> float:
+    """Rms height [m] of the joint's fractal surface with wavelengths up to `longest_wave` [m]."""
+    return float(rms_height(joint_parameters.surface.D, joint_parameters.surface.G, longest_wave))
 
 
-def evaluate_mindlin(joint: BoltedJointParameters, function: str, x: float) -> float:
-    """One of Mindlin's functions of a contact spot in partial slip [1], at a traction ratio x [1].
+def evaluate_mindlin(joint_parameters: BoltedJointParameters, function: str, x: float) -> float:
+    """One of Mindlin's functions [1] of a contact spot in partial slip; x: shear force over friction limit.
 
-    function : "loop" (H1, dissipation), "storage" (H2, stored energy) or "loss_ratio" (W_d/W)
+    function : "loop" (H1, dissipated energy), "storage" (H2, stored energy) or "loss_ratio" (dissipated
+               energy of a cycle over 2 pi times the stored energy)
     """
     table = {
         "loop": mindlin.dissipation_function,
@@ -72,22 +78,22 @@ def evaluate_mindlin(joint: BoltedJointParameters, function: str, x: float) -> f
     return float(table[function](x))
 
 
-def domain_extension_factor(joint: BoltedJointParameters, D: float) -> float:
+def domain_extension_factor(joint_parameters: BoltedJointParameters, D: float) -> float:
     """Domain extension factor psi [1] for a fractal dimension D of the profile."""
     return float(domain_extension(D))
 
 
-def frequency_error(joint: BoltedJointParameters, predicted: float, measured: float) -> float:
+def frequency_error(joint_parameters: BoltedJointParameters, predicted: float, measured: float) -> float:
     """Error [%] of a predicted frequency relative to the measured one [Hz]."""
     return 100.0 * (predicted / measured - 1.0)
 
 
 PUBLISHED_NUMBERS = PublishedNumbers(
-    papers=("zhao2018",),
+    paper_names=("zhao2018",),
     observable_functions={
         "p_max": largest_pressure,
         "p_between": pressure_between_bolts,
-        "row_force": row_force,
+        "row_force": bolt_row_force,
         "critical_area": critical_area,
         "spot_stiffness_ratio": spot_stiffness_ratio,
         "rms_height": surface_rms_height,
@@ -95,7 +101,7 @@ PUBLISHED_NUMBERS = PublishedNumbers(
         "psi": domain_extension_factor,
         "frequency_error": frequency_error,
     },
-    calibration=(
+    calibration_fits=(
         CalibrationFit(
             {"pattern.decay_length": 0.01, "pattern.decay_exponent": 1.0},
             ("p_max.9kN", "p_between.9kN"),

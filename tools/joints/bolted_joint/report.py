@@ -23,40 +23,40 @@ from ...common.shown import format_quantity
 from ...pages.report.figure import ComparisonRow, Figure
 from ...pages.report.load_history import LoadHistory
 from .field import PlaneLayout
-from .gross_slip import PRELOAD_ENTRY, friction_results, preload_results
+from .gross_slip import PRELOAD_ENTRY_NAME, compute_friction_results, compute_preload_results
 from .picture import draw_plan, draw_section
-from .tensile_load import MAX_BOLT_OVER_TIGHTENING_FORCE, bolt_forces
+from .tensile_load import MAX_BOLT_OVER_TIGHTENING_FORCE, compute_bolt_forces
 
 MAX_PLOTTED_OVER_OPENING_LOAD = 1.3
 """Largest plotted tensile force over the opening load of the interface [1]."""
 MAX_BOLT_SHARE_EXCESS_OVER_MEAN = 0.05
 """Excess of the largest bolt share over the mean share [1], up to which bolts count as equally loaded."""
-EQUAL_FORCE_TOLERANCE = 1e-3
+EQUAL_BOLT_FORCE_TOLERANCE = 1e-3
 """Difference of two bolt forces over the largest one [1], up to which they share a curve."""
 
 
-def joint_figures(load_history: LoadHistory) -> list[Figure]:
+def make_bolted_joint_figures(load_history: LoadHistory) -> list[Figure]:
     """Make all figures of a bolted joint's report: pictures, complete joint, preload, friction."""
     return [
-        picture_figure(load_history),
-        *stiffness_figures(load_history),
-        *preload_figures(load_history),
-        *friction_figures(load_history),
+        make_plan_and_section_figure(load_history),
+        *make_stiffness_figures(load_history),
+        *make_preload_figures(load_history),
+        *make_friction_figures(load_history),
     ]
 
 
-def picture_figure(load_history: LoadHistory) -> Figure:
+def make_plan_and_section_figure(load_history: LoadHistory) -> Figure:
     """Plan view of the joint, and a section if the file has the thickness of the sides."""
     joint = load_history.file.values
     preload, moment = _working_point(load_history)
-    bodies, bolts = joint.bodies, PlaneLayout.from_joint(joint).bolt_positions
+    bodies, bolts = joint.bodies, PlaneLayout.from_joint_parameters(joint).bolt_positions
     pictures = [draw_plan(joint, preload, moment)]
     if joint.has_elastic_members and isinstance(bodies, ElasticBodies) and bodies.thickness:
         pictures.append(draw_section(joint))
     text = "The tightened interface, seen from side 2; open areas are grey. "
     if isinstance(joint.pattern, NodalField):
         text += "Dots show the pressure at some nodes of the field, which represent all nodes. "
-    if not PlaneLayout.from_joint(joint).contact_outline:
+    if not PlaneLayout.from_joint_parameters(joint).contact_outline:
         text += "The outline is not in the file. "
     text += (
         "The numbers of the bolts are those of the FMU's F_bolt. "
@@ -71,46 +71,51 @@ def picture_figure(load_history: LoadHistory) -> Figure:
         + " The members, usually much softer, are not included; jointfmu new makes the complete joint from a "
         "drawing."
     )
-    return Figure("The joint", text, pictures=pictures)
+    return Figure("The joint", text, svg_pictures=pictures)
 
 
-def friction_figures(load_history: LoadHistory) -> list[Figure]:
+def make_friction_figures(load_history: LoadHistory) -> list[Figure]:
     """Table of gross-slip force and loss factor over the range of mu; empty if the file states no range."""
     if "mu" not in load_history.file.ranges:
         return []
-    shear, rows = friction_results(load_history.file, _working_point(load_history)[0])
-    table = [("mu", "gross slip at", f"loss factor at {_format_value(shear, 'N')} of shear")]
+    shear, rows = compute_friction_results(load_history.file, _working_point(load_history)[0])
+    table = [("mu", "gross slip at", f"loss factor at {_format_in_display_unit(shear, 'N')} of shear")]
     for row in sorted(rows):
-        table.append((f"{row.mu:.4g}", _format_value(row.slip_force, "N"), f"{row.loss_factor:.3g}"))
+        table.append(
+            (
+                f"{row.friction_coefficient:.4g}",
+                _format_in_display_unit(row.slip_force, "N"),
+                f"{row.loss_factor:.3g}",
+            )
+        )
     text = (
         f"The friction coefficient is the least certain input: {load_history.file.sources['mu']}. "
         "The loss factor "
         "is that of the interface between rigid sides, under the same shear force."
     )
-    return [Figure("Effect of the friction coefficient", text, table=table)]
+    return [Figure("Effect of the friction coefficient", text, table_rows=table)]
 
 
-def preload_figures(load_history: LoadHistory) -> list[Figure]:
+def make_preload_figures(load_history: LoadHistory) -> list[Figure]:
     """Table of stiffness, gross-slip force and opening load over the range of the preload.
 
     Empty if the file states no range of the preload.
     """
     file = load_history.file
-    if PRELOAD_ENTRY not in file.ranges:
+    if PRELOAD_ENTRY_NAME not in file.ranges:
         return []
     table: list[tuple[str, ...]] = [
         ("preload", "stiffness along z", "stiffness along x", "gross slip at", "interface opens at")
     ]
-    for row in sorted(preload_results(file)):
+    for row in sorted(compute_preload_results(file)):
         values = zip(row, ("N", "N/m", "N/m", "N", "N"), strict=True)
-        table.append(tuple(_format_value(value, unit) for value, unit in values))
+        table.append(tuple(_format_in_display_unit(value, unit) for value, unit in values))
     text = (
-        "The preload is uncertain: "
-        f"{file.sources[PRELOAD_ENTRY]}. Embedding takes {_format_value(file.values.embedding, 'N')} of each "
-        "preload. The stiffness is that of the FMU; the force along z that opens the interface is a linear "
-        "estimate."
+        f"The preload is uncertain: {file.sources[PRELOAD_ENTRY_NAME]}. Embedding takes "
+        f"{_format_in_display_unit(file.values.embedding, 'N')} of each preload. The stiffness is that of "
+        "the FMU; the force along z that opens the interface is a linear estimate."
     )
-    return [Figure("Effect of the preload", text, table=table)]
+    return [Figure("Effect of the preload", text, table_rows=table)]
 
 
 def _working_point(load_history: LoadHistory) -> tuple[float, float]:
@@ -120,12 +125,12 @@ def _working_point(load_history: LoadHistory) -> tuple[float, float]:
     return float(preload_at_temperature(load_history.file.values, preload, temperature)), moment
 
 
-def stiffness_figures(load_history: LoadHistory) -> list[Figure]:
+def make_stiffness_figures(load_history: LoadHistory) -> list[Figure]:
     """Figures of the stiffness of joint, interface and bolts, and of bolt forces over a force along z.
 
     Empty for rigid sides.
     """
-    joint, spring = load_history.file.values, load_history.spring
+    joint, spring = load_history.file.values, load_history.tabulated_joint
     if not joint.has_elastic_members:
         return []
     assert isinstance(spring, BoltedJointSpring)
@@ -144,65 +149,67 @@ def stiffness_figures(load_history: LoadHistory) -> list[Figure]:
         else "around the bolts"
     )
     text = _stiffness_text(compliances, remaining_preload, moment) + (
-        f" A force of {_format_value(opening, 'N')} along z opens the interface {location} (linear estimate "
-        "with these stiffnesses); a joint that peels opens at a lower load, as the plot shows. The whole "
-        f"interface slips at {_format_value(limit, 'N')} along x or y; slip begins at the edges at a far "
-        "lower load, and its loss is under Loops. The plot shows a tensile force up to "
+        f" A force of {_format_in_display_unit(opening, 'N')} along z opens the interface {location} (linear "
+        "estimate with these stiffnesses); a joint that peels opens at a lower load, as the plot shows. The "
+        f"whole interface slips at {_format_in_display_unit(limit, 'N')} along x or y; slip begins at the "
+        "edges at a far lower load, and its loss is under Loops. The plot shows a tensile force up to "
         f"{MAX_PLOTTED_OVER_OPENING_LOAD:g} times the opening load, free in the other five motions, and up "
         f"to {MAX_BOLT_OVER_TIGHTENING_FORCE:g} times the force of a bolt at tightening."
     )
-    return [Figure("The complete joint", text, [panel], table=_stiffness_rows(compliances))]
+    return [Figure("The complete joint", text, [panel], table_rows=_stiffness_rows(compliances))]
 
 
-def _format_value(value: float, unit: str) -> str:
-    """Format a value with three digits in a display unit."""
-    return " ".join(format_quantity(value, unit, 4))
+def _format_in_display_unit(value_in_si: float, si_unit: str) -> str:
+    """Format a value in SI units with three digits in the unit in which it is displayed."""
+    return " ".join(format_quantity(value_in_si, si_unit, 4))
 
 
-def _stiffness_rows(compliances: Compliances) -> list[tuple[str, ...]]:
+def _stiffness_rows(joint_compliances: Compliances) -> list[tuple[str, ...]]:
     """Table rows, one per direction: stiffnesses, and shares of the compliance."""
     heads = ("complete joint", "interface alone", "members", "bolts alone", "interface", "members", "bolts")
     rows: list[tuple[str, ...]] = [("", *heads)]
-    for name, unit, stiffnesses, shares in compliances.table_rows():
-        cells = [_format_value(value, unit) if value > 0.0 else "none" for value in stiffnesses]
+    for name, unit, stiffnesses, shares in joint_compliances.compliance_table_rows():
+        cells = [_format_in_display_unit(value, unit) if value > 0.0 else "none" for value in stiffnesses]
         rows.append((name, *cells, *(f"{share:.1%}" for share in shares)))
     return rows
 
 
-def _stiffness_text(compliances: Compliances, remaining_preload: float, moment: float) -> str:
+def _stiffness_text(joint_compliances: Compliances, remaining_preload: float, bending_moment: float) -> str:
     """Text under the table of stiffnesses: preload, moment, meaning of the shares."""
-    share = compliances.compliance_shares[0]
+    share = joint_compliances.compliance_shares[0]
     largest = float(np.max(share))
     effect = (
         "it matters for the stiffness"
-        if compliances.is_interface_relevant
+        if joint_compliances.is_interface_relevant
         else "it hardly affects the stiffness"
     )
     return (
         "Small motions of the attachments about the tightened state, "
-        f"{_format_value(remaining_preload, 'N')} "
-        "in each bolt"
-        + (f" with a moment of {moment:g} N m" if moment else "")
+        f"{_format_in_display_unit(remaining_preload, 'N')} in each bolt"
+        + (f" with a moment of {bending_moment:g} N m" if bending_moment else "")
         + ", one at a time with the other five fixed. The stiffness of the complete "
         "joint is that of the FMU. The last three columns are shares of its compliance, by stored energy. "
         "Members are a spring in series with interface and bolts; interface alone and bolts alone are "
         f"between rigid sides. The interface has {share[2]:.1%} of the compliance along z and at most "
-        f"{largest:.1%} in any direction: {effect}. The bolts carry {compliances.joint_load_factor:.3f} of a "
-        "force along z (load factor n Phi_K of VDI 2230), with the other motions free; where the interface "
-        "is open they carry the full force, as the plot shows."
+        f"{largest:.1%} in any direction: {effect}. The bolts carry "
+        f"{joint_compliances.joint_load_factor:.3f} of a force along z (load factor n Phi_K of VDI 2230), "
+        "with the other motions free; where the interface is open they carry the full force, as the plot "
+        "shows."
     )
 
 
-def _group_equal_rows(number_columns: Array) -> list[list[int]]:
-    """Group the rows of columns of numbers: indices of rows with equal values together.
+def _group_equal_rows(columns_of_numbers: Array) -> list[list[int]]:
+    """Group the rows of a table of numbers: lists of the indices of rows with equal values.
 
     The groups are in the order of their first rows.
     """
     groups: list[list[int]] = []
-    scale = float(np.max(np.abs(number_columns), initial=0.0))
-    for j, row in enumerate(number_columns):
+    scale = float(np.max(np.abs(columns_of_numbers), initial=0.0))
+    for j, row in enumerate(columns_of_numbers):
         for group in groups:
-            if np.allclose(row, number_columns[group[0]], rtol=0.0, atol=EQUAL_FORCE_TOLERANCE * scale):
+            if np.allclose(
+                row, columns_of_numbers[group[0]], rtol=0.0, atol=EQUAL_BOLT_FORCE_TOLERANCE * scale
+            ):
                 group.append(j)
                 break
         else:
@@ -210,16 +217,18 @@ def _group_equal_rows(number_columns: Array) -> list[list[int]]:
     return groups
 
 
-def _name_bolts(bolts: Sequence[int]) -> str:
-    """Name the bolts with equal forces, which share one curve of a chart."""
-    names = ", ".join(bolt_force_name(j) for j in bolts)
-    return f"{names} (equal)" if len(bolts) > 1 else names
+def _name_bolts(bolt_indices: Sequence[int]) -> str:
+    """Text with the numbers of bolts that have equal forces and share one curve of a chart."""
+    names = ", ".join(bolt_force_name(j) for j in bolt_indices)
+    return f"{names} (equal)" if len(bolt_indices) > 1 else names
 
 
-def _bolt_force_chart(spring: BoltedJointSpring, preload: float, moment: float, max_force: float) -> Panel:
-    """Chart of the force of each bolt over a tensile force along z, up to `max_force` [N]."""
-    pulls = np.linspace(0.0, max_force, 27)
-    columns = 1e-3 * bolt_forces(spring, preload, moment, pulls).T
+def _bolt_force_chart(
+    joint_spring: BoltedJointSpring, preload: float, bending_moment: float, max_tensile_force: float
+) -> Panel:
+    """Chart of the force of each bolt over a tensile force along z, up to `max_tensile_force` [N]."""
+    pulls = np.linspace(0.0, max_tensile_force, 27)
+    columns = 1e-3 * compute_bolt_forces(joint_spring, preload, bending_moment, pulls).T
     series = [
         Series(_name_bolts(bolts), 1e-3 * pulls[: len(columns[bolts[0]])], columns[bolts[0]])
         for bolts in _group_equal_rows(columns)
@@ -229,7 +238,7 @@ def _bolt_force_chart(spring: BoltedJointSpring, preload: float, moment: float, 
     )
 
 
-REPORT_FIGURES = {"BoltedJoint": joint_figures}
+REPORT_FIGURES = {"BoltedJoint": make_bolted_joint_figures}
 """{FMU: function that makes the figures of its report}."""
 CATALOGUE_COMPARISONS: dict[str, Callable[[Model, ParameterFile], list[ComparisonRow]]] = {}
 """Comparisons with catalogue values: none, because there are no catalogues of bolted joints."""

@@ -14,87 +14,97 @@ from ...studies.uncertainty.curves import DerivedOutput, JointSample, LoadCurves
 
 INTERFACE_ONLY_PARAMETERS = {"sides": "rigid", "bolt_stiffness": 0.0, "memory": True}
 """Parameters of the interface alone: rigid members, no bolts in parallel, friction with slip."""
-LOG_FORCE_RANGE, LOG_FORCE_POINT_COUNT = 30.0, 41
+INTEGRATED_LOG_FORCE_RANGE, INTEGRATION_POINT_COUNT = 30.0, 41
 """Range of ln(force) below the end of the ramp, and number of points [1] of the integral of dF/K."""
 LOOP_SHEAR_OVER_BOLT_FORCE = 0.05
 """Shear force of the loop over the force of all bolts [1]: half of mu = 0.1."""
 MAX_SHEAR_OVER_SLIP_FORCE = 0.8
 """Largest shear force of the loop over the slip force [1]."""
-LOOP_LOADS_OVER_RAMP_END = np.geomspace(0.02, 1.0, 5)
+LOOP_PRELOADS_OVER_RAMP_END_PRELOAD = np.geomspace(0.02, 1.0, 5)
 """Preloads at which loops are computed, over the end of the load ramp [1].
 
 The loss factor is interpolated between them."""
-START_EXPONENT = 12.0
+AMPLITUDE_SEARCH_PRESSURE_EXPONENT = 12.0
 """Exponent N of the pressure p ~ approach^N [1] from which the search of the amplitude of a loop starts."""
-MAX_ITERATIONS, RELATIVE_TOLERANCE = 12, 1e-5
+MAX_NEWTON_ITERATIONS, RELATIVE_AMPLITUDE_TOLERANCE = 12, 1e-5
 """Limits of Newton's method for the amplitude of the loop [1]."""
 
 
-def approach(sample: JointSample, preload: Array) -> Array:
-    """Approach (m) [m] of the interface at preloads (m) [N].
+def interface_approach(joint_sample: JointSample, preload: Array) -> Array:
+    """Approach (m) [m] of the interface at m preloads [N] per bolt.
 
-    The approach is the integral of dF/K_zz over the force F of all bolts. Below the first preload, F/K_zz is
-    taken as a power of F.
+    The approach is the integral of dF/K_zz over the force F of all bolts; K_zz is the normal stiffness. Below
+    the first preload, F/K_zz is taken as a power of F.
     """
     end = preload[-1]
-    x = np.linspace(-LOG_FORCE_RANGE, 0.0, LOG_FORCE_POINT_COUNT)
-    force = sample.parameters.n_bolts * end * np.exp(x)
-    rate = force / sample.follow({"preload": end * np.exp(x)}, INTERFACE_ONLY_PARAMETERS)["K_zz"]
+    x = np.linspace(-INTEGRATED_LOG_FORCE_RANGE, 0.0, INTEGRATION_POINT_COUNT)
+    force = joint_sample.parameter_set.n_bolts * end * np.exp(x)
+    rate = (
+        force / joint_sample.evaluate_outputs({"preload": end * np.exp(x)}, INTERFACE_ONLY_PARAMETERS)["K_zz"]
+    )
     (exponent,) = spline_weights(x, x[:1], 1) @ np.log(rate)
     return np.asarray(rate[0] / exponent + spline_weights(x, np.log(preload / end), -1) @ rate)
 
 
-def opening_load(sample: JointSample, preload: Array) -> Array:
-    """Force along z (m) [N] that opens the interface around the most loaded bolt, by linear theory.
+def opening_load(joint_sample: JointSample, preload: Array) -> Array:
+    """Force along z [N], at m preloads, that opens the interface at the most loaded bolt, by linear theory.
 
-    The load factor is that of the last preload: it hardly changes along the ramp.
+    The load factor (bolt load over external load) is that at the last preload: it hardly changes.
     """
-    spring = BoltedJointSpring.for_joint(replace(sample.parameters, embedding=0.0))
+    spring = BoltedJointSpring.from_joint(replace(joint_sample.parameter_set, embedding=0.0))
     return np.asarray(preload * spring.compliances(float(preload[-1])).opening_load(1.0))
 
 
-def loss_factor(sample: JointSample, preload: Array) -> Array:
-    """Loss factor (m) [1] of loops of the interface at preloads (m) [N].
+def loss_factor(joint_sample: JointSample, preload: Array) -> Array:
+    """Loss factor (m) [1] of shear loops of the interface at m preloads [N] per bolt.
 
     The amplitude of the shear force is LOOP_SHEAR_OVER_BOLT_FORCE of the force of all bolts.
 
     The FMU gives the loss factor of a loop with the present displacement as its amplitude. Newton's method
     finds the displacement at the shear force. It starts on a virgin curve with the same initial stiffness and
-    friction limit, for a pressure p ~ approach^START_EXPONENT.
+    friction limit, for a pressure p ~ approach^AMPLITUDE_SEARCH_PRESSURE_EXPONENT.
     """
-    loads, parameters = preload[-1] * LOOP_LOADS_OVER_RAMP_END, sample.parameters
+    loads, parameters = preload[-1] * LOOP_PRELOADS_OVER_RAMP_END_PRELOAD, joint_sample.parameter_set
     limit = parameters.mu * parameters.n_bolts * loads
     shear = np.minimum(
         LOOP_SHEAR_OVER_BOLT_FORCE * parameters.n_bolts * loads, MAX_SHEAR_OVER_SLIP_FORCE * limit
     )
-    stiffness = sample.follow({"preload": loads, "s_rel_x": np.zeros_like(loads)}, INTERFACE_ONLY_PARAMETERS)[
-        "K_xx"
-    ]
-    start_ratio = START_EXPONENT * (1.0 - (1.0 - shear / limit) ** (1.0 / START_EXPONENT))
+    stiffness = joint_sample.evaluate_outputs(
+        {"preload": loads, "s_rel_x": np.zeros_like(loads)}, INTERFACE_ONLY_PARAMETERS
+    )["K_xx"]
+    start_ratio = AMPLITUDE_SEARCH_PRESSURE_EXPONENT * (
+        1.0 - (1.0 - shear / limit) ** (1.0 / AMPLITUDE_SEARCH_PRESSURE_EXPONENT)
+    )
     amplitude = start_ratio * limit / stiffness
-    for _ in range(MAX_ITERATIONS):
-        state = sample.follow({"preload": loads, "s_rel_x": amplitude}, INTERFACE_ONLY_PARAMETERS)
+    for _ in range(MAX_NEWTON_ITERATIONS):
+        state = joint_sample.evaluate_outputs(
+            {"preload": loads, "s_rel_x": amplitude}, INTERFACE_ONLY_PARAMETERS
+        )
         step = (shear + state["f_x"]) / state["K_xx"]
         amplitude = amplitude + step
-        if np.all(np.abs(step) <= RELATIVE_TOLERANCE * amplitude):
+        if np.all(np.abs(step) <= RELATIVE_AMPLITUDE_TOLERANCE * amplitude):
             break
-    relative = np.maximum(preload / preload[-1], LOOP_LOADS_OVER_RAMP_END[0])
-    return np.asarray(spline_weights(np.log(LOOP_LOADS_OVER_RAMP_END), np.log(relative)) @ state["eta_loop"])
+    relative = np.maximum(preload / preload[-1], LOOP_PRELOADS_OVER_RAMP_END_PRELOAD[0])
+    return np.asarray(
+        spline_weights(np.log(LOOP_PRELOADS_OVER_RAMP_END_PRELOAD), np.log(relative)) @ state["eta_loop"]
+    )
 
 
 UNCERTAINTY_CURVES = LoadCurves(
-    model="BoltedJoint",
-    load=replace(KIND.variables["preload"], doc="force of each bolt after embedding, at its temperature"),
+    fmu_name="BoltedJoint",
+    ramped_input=replace(
+        KIND.variables["preload"], doc="force of each bolt after embedding, at its temperature"
+    ),
     outputs=tuple(KIND.variables[name] for name in ("K_zz", "K_xx", "C_zz", "C_xx")),
     knot_count=17,
     derived_outputs=(
         DerivedOutput(
             Variable("approach", "m", "approach of the two sides by tightening, from zero preload", 1e-6),
-            approach,
+            interface_approach,
         ),
         DerivedOutput(
             Variable("slip_force", "N", "shear force at which the whole interface slips", 1e4),
-            lambda sample, preload: np.asarray(slip_force(sample.parameters, preload)),
+            lambda sample, preload: np.asarray(slip_force(sample.parameter_set, preload)),
         ),
         DerivedOutput(
             Variable("opening_load", "N", "force along z that opens the interface, by linear theory", 1e4),
@@ -110,10 +120,10 @@ UNCERTAINTY_CURVES = LoadCurves(
             loss_factor,
         ),
     ),
-    default_end=lambda joint: 30e3,
+    default_ramp_end=lambda joint: 30e3,
     max_load=lambda joint: joint.max_pressure * joint.A_0 / joint.n_bolts,
-    load_loss=lambda joint: joint.embedding,
-    other_inputs=lambda joint: {"temperature": TIGHTENING_TEMPERATURE},
-    settings={"embedding": 0.0},
+    lost_load=lambda joint: joint.embedding,
+    fixed_inputs=lambda joint: {"temperature": TIGHTENING_TEMPERATURE},
+    fixed_parameters={"embedding": 0.0},
 )
 """Quantities of the bolted joint along its load ramp."""

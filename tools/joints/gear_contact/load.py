@@ -7,7 +7,7 @@ from jointfmu.joints.gear_contact import KIND
 from jointfmu.joints.gear_contact.spring import ContactParameters, GearContactSpring
 
 from ...common.pressure import FLANK_PRESSURE_MODEL
-from ...exchange.export.exports import Exports, LoadCurveExport
+from ...exchange.export.exports import JointExports, LoadCurveExport
 from ...pages.laboratory.joint_additions import LaboratoryModel
 
 if TYPE_CHECKING:
@@ -17,24 +17,26 @@ if TYPE_CHECKING:
 
 
 def _contact_curve(contact_parameters: ContactParameters) -> "tuple[Curve, Sequence[str]]":
-    """Contact law of the flanks: pressure [Pa] over approach [m]."""
+    """Contact law of the flanks: pressure [Pa] as a function of the approach [m]."""
     return GearContactSpring.tabulate(contact_parameters).curve, ()
 
 
-def _load_table(contact_parameters: ContactParameters, _working_point: None, max_error: float) -> "LoadTable":
-    """Table of normal force [N] over approach [m], for other solvers."""
+def _load_table(
+    contact_parameters: ContactParameters, _working_point: None, max_table_error: float
+) -> "LoadTable":
+    """Table of the normal force [N] as a function of the approach [m], for other solvers."""
     from ...exchange.export.tables import tabulate_load
 
     return tabulate_load(
-        GearContactSpring.tabulate(contact_parameters).curve, contact_parameters.A_0, max_error
+        GearContactSpring.tabulate(contact_parameters).curve, contact_parameters.A_0, max_table_error
     )
 
 
-EXPORTS = Exports(
+EXPORTS = JointExports(
     contact=_contact_curve,
     curve=LoadCurveExport(
-        meaning="normal load over approach of the flanks from first touch; without load while apart",
-        columns=tuple(KIND.variables[name] for name in ("s_rel", "f", "K_N")),
+        curve_meaning="normal load over approach of the flanks from first touch; without load while apart",
+        curve_variables=tuple(KIND.variables[name] for name in ("s_rel", "f", "K_N")),
         table_name="force",
         compute_table=_load_table,
     ),

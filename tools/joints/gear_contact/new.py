@@ -5,7 +5,7 @@ from ...inputs.drawing.faces import FACE_OPTIONS
 from ...inputs.drawing.part import DrawingOptions, NewJoint, NewJointCommand
 
 
-def _make_joint(options: DrawingOptions) -> NewJoint:
+def _make_joint(drawing_options: DrawingOptions) -> NewJoint:
     """Make a gear contact from the options of a drawing."""
     from jointfmu.contact.surface import ElasticConstants, contact_modulus
     from jointfmu.joints.gear_contact import KIND
@@ -14,64 +14,80 @@ def _make_joint(options: DrawingOptions) -> NewJoint:
     from ...inputs.drawing import faces
     from ...inputs.drawing.faces import hertz_line_contact
     from ...inputs.drawing.part import ParameterSheet
-    from ...inputs.drawing.quantities import parse_value
+    from ...inputs.drawing.quantities import parse_quantity_value
 
-    sheet = ParameterSheet(KIND.name, faces.find_law(options))
-    faces.add_faces(sheet, options)
-    load = parse_value("load", options["load"])
-    width = parse_value("width", options["width"])
-    if len(options["radii"]) != 2:
-        raise ValueError(f"--radii has {len(options['radii'])} values, expected one of each flank")
-    curvature = sum(_parse_curvature(text) for text in options["radii"])
+    sheet = ParameterSheet(KIND.name, faces.choose_interface_law(drawing_options))
+    faces.add_face_parameters(sheet, drawing_options)
+    load = parse_quantity_value("load", drawing_options["load"])
+    width = parse_quantity_value("width", drawing_options["width"])
+    if len(drawing_options["radii"]) != 2:
+        raise ValueError(
+            f"--radii has {len(drawing_options['radii'])} values, expected 2: one for each flank"
+        )
+    curvature = sum(_parse_curvature(text) for text in drawing_options["radii"])
     if not curvature > 0.0:
         raise ValueError(
-            f"--radii = {' '.join(options['radii'])}: the flanks do not bulge towards each other"
+            f"--radii = {' '.join(drawing_options['radii'])}: expected 1/R1 + 1/R2 above 0; a concave flank "
+            "needs the larger radius"
         )
     sides = [
-        ElasticConstants(E=sheet.get_value(f"side{i}.E"), nu=sheet.get_value(f"side{i}.nu")) for i in (1, 2)
+        ElasticConstants(
+            E=sheet.get_parameter_value(f"side{i}.E"), nu=sheet.get_parameter_value(f"side{i}.nu")
+        )
+        for i in (1, 2)
     ]
     hertz = hertz_line_contact(load, width, curvature, contact_modulus(*sides))
     text = f"Hertz's line contact under {load:g} N, {width * 1e3:g} mm wide, 1/R = {curvature:.4g} 1/m"
     sheet.add_parameter("A_0", float(hertz.area), "derived", text)
     sheet.add_drawing_value("inputs.f", load)
-    file = sheet.build_file(f"flanks {options['width']} wide")
+    file = sheet.build_parameter_file(f"flanks {drawing_options['width']} wide")
     state = GearContactSpring.tabulate(file.values).evaluate(load)
     facts = {
         "load": (load, "N", "normal load"),
         "half_width": (float(hertz.half_width), "m", "half width of the patch (Hertz)"),
         "p_hertz": (float(hertz.peak_pressure), "Pa", "largest pressure of smooth flanks (Hertz)"),
-        **faces.height_fact(file),
+        **faces.derive_rms_height(file),
         "K_N": (float(state["K_N"]), "N/m", "stiffness of the rough interface at this load"),
         "s_rel": (float(state["s_rel"]), "m", "approach of the rough interface at this load"),
     }
-    return NewJoint(file, facts, faces.warn_hardness(float(hertz.peak_pressure), sheet.get_value("H")))
+    return NewJoint(
+        file,
+        facts,
+        faces.warn_pressure_above_hardness(float(hertz.peak_pressure), sheet.get_parameter_value("H")),
+    )
 
 
 def _parse_curvature(radius_text: str) -> float:
     """Curvature [1/m] of a flank from its radius, positive if convex."""
-    from ...inputs.drawing.quantities import parse_value
+    from ...inputs.drawing.quantities import parse_quantity_value
 
     if radius_text.strip().lower() in ("inf", "flat"):
         return 0.0
-    radius = parse_value("radii", radius_text)
+    radius = parse_quantity_value("radii", radius_text)
     if radius == 0.0:
         raise ValueError("--radii = 0 mm is not a radius; expected a radius (negative: concave) or flat")
     return 1.0 / radius
 
 
 NEW_JOINT_COMMAND = NewJointCommand(
-    description="the contact of two tooth flanks under a load",
-    example="--width 20 --radii 12 30 --load 2000 --material 'hardened steel' --finish ground",
-    options=(
+    joint_description="the contact of two tooth flanks under a load",
+    example_options="--width 20 --radii 12 30 --load 2000 --material 'hardened steel' --finish ground",
+    command_options=(
         Option("width", "width of the flanks along the line of contact [mm]", "B", is_required=True),
         Option(
             "radii",
-            "radius of curvature of each flank at the contact [mm]; negative: concave; flat: plane",
+            "radius of curvature of each flank at the contact [mm]: positive convex, negative concave, "
+            "flat for a plane",
             "R",
             is_list=True,
             is_required=True,
         ),
-        Option("load", "normal load, which determines the contact patch [N]", "F", is_required=True),
+        Option(
+            "load",
+            "normal force between the flanks [N]; it determines the size of the contact patch",
+            "F",
+            is_required=True,
+        ),
         *FACE_OPTIONS,
     ),
     make_joint=_make_joint,

@@ -20,11 +20,11 @@ def _check_approach(fmu_folder: Path, ramp_result: RampResult) -> tuple[str, flo
     law = load_default("gear_contact").values
     assert isinstance(law, GearContactParameters)
 
-    def compliance(force: Array) -> Array:
+    def compliance(normal_force: Array) -> Array:
         """Compliance 1/K_N [m/N] at normal forces [N]."""
-        return 1.0 / (law.A_0 * stiffness_curve(law, force / law.A_0)[0])
+        return 1.0 / (law.A_0 * stiffness_curve(law, normal_force / law.A_0)[0])
 
-    c, at = ramp_result.columns, [1, 10, 100, 300]
+    c, at = ramp_result.variable_columns, [1, 10, 100, 300]
     miss = relative_deviation(np.diff(c["s_rel"][at]), integrate_logarithmically(compliance, c["f"][at]))
     return "s_rel against the integral of df/K of the law (scipy, Simpson)", miss
 
@@ -36,9 +36,9 @@ A check is a function: (folder, ramp of the FMU) -> (name of the compared
 quantity, largest relative deviation [1])."""
 
 
-def make_figures(job_result: Any) -> list[Figure]:
-    """Make the figure of the gear contact, from the results of the main job (`PipelineResult`)."""
-    c = job_result.ramps["GearContact"].columns
+def make_figures(pipeline_result: Any) -> list[Figure]:
+    """Make the figure of the gear contact, from the results of building all FMUs (`PipelineResult`)."""
+    c = pipeline_result.load_ramps["GearContact"].variable_columns
     load = c["f"] / 1e3
     panels = [
         Panel("Stiffness over load", "load [kN]", "K_N [N/um]", [Series("K_N", load, c["K_N"] / 1e6)]),

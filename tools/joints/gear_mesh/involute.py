@@ -4,23 +4,33 @@ from dataclasses import dataclass
 
 import numpy as np
 
-E_STEEL = 206e9
+YOUNG_MODULUS_OF_STEEL = 206e9
 """Young's modulus [Pa] of steel wheels for which ISO 6336-1 states the stiffness."""
 TOOTH_STIFFNESS_CORRECTION = 0.8
 """Factor C_M of ISO 6336-1 [1]: measured over theoretical stiffness of a tooth pair."""
 REFERENCE_LINE_LOAD = 100e3
 """Tangential load per face width [N/m] below which ISO 6336-1 reduces the tooth stiffness."""
-STIFFNESS_COEFFICIENTS = 0.04723, 0.15551, 0.25791, -0.00635, -0.11654, -0.00193, -0.24188, 0.00529, 0.00182
+TOOTH_COMPLIANCE_COEFFICIENTS = (
+    0.04723,
+    0.15551,
+    0.25791,
+    -0.00635,
+    -0.11654,
+    -0.00193,
+    -0.24188,
+    0.00529,
+    0.00182,
+)
 """Coefficients C_1 to C_9 [mm um/N] of ISO 6336-1 for the compliance q' of a tooth pair."""
-PROFILE_SHIFT_SUMS = -0.5, 2.0
+VALID_PROFILE_SHIFT_SUM_RANGE = -0.5, 2.0
 """Smallest and largest x_1 + x_2 [1] for which ISO 6336-1 states the tooth stiffness."""
-STANDARD_DEDENDUM = 1.2
+STANDARD_DEDENDUM_OVER_MODULE = 1.2
 """Dedendum of the basic rack over the module [1] for which C_B of ISO 6336-1 is 1 at 20 degrees."""
-MIN_TIP_THICKNESS = 0.2
+MIN_TIP_THICKNESS_OVER_MODULE = 0.2
 """Usual least tooth thickness at the tip over the module [1]."""
-MAX_DISTANCE_ERROR = 0.01
+MAX_CENTRE_DISTANCE_ERROR_OVER_MODULE = 0.01
 """Largest difference between a stated and the computed centre distance, over the module [1]."""
-DAMPING_RATIO = 0.06
+MESH_DAMPING_RATIO = 0.06
 """Damping ratio [1] of the oscillation of both wheels, as solid discs, on the mesh stiffness."""
 
 
@@ -28,14 +38,14 @@ DAMPING_RATIO = 0.06
 class InvoluteGearPair:
     """Two external involute gear wheels with profile shift, meshing without backlash.
 
-    normal_module    : [m] normal module
-    tooth_counts     : number of teeth of both wheels
-    face_width       : [m] common face width
-    pressure_angle   : [rad] normal pressure angle
-    helix_angle      : [rad] at the reference circle
-    profile_shifts   : profile shift coefficients x_1, x_2 [1]
-    stated_tip_radii : [m] of both wheels; None: addendum of one module, shortened for the tip clearance
-    dedendum         : dedendum of the basic rack over the module [1]
+    normal_module        : [m] normal module
+    tooth_counts         : number of teeth of both wheels
+    face_width           : [m] common face width
+    pressure_angle       : [rad] normal pressure angle
+    helix_angle          : [rad] at the reference circle
+    profile_shifts       : profile shift coefficients x_1, x_2 [1]
+    stated_tip_radii     : [m] of both wheels; None: addendum of one module, shortened for the tip clearance
+    dedendum_over_module : dedendum of the basic rack over the module [1]
     """
 
     normal_module: float
@@ -45,7 +55,7 @@ class InvoluteGearPair:
     helix_angle: float
     profile_shifts: tuple[float, float] = (0.0, 0.0)
     stated_tip_radii: tuple[float, float] | None = None
-    dedendum: float = STANDARD_DEDENDUM
+    dedendum_over_module: float = STANDARD_DEDENDUM_OVER_MODULE
 
     @property
     def transverse_angle(self) -> float:
@@ -60,7 +70,7 @@ class InvoluteGearPair:
 
     @property
     def base_radii(self) -> tuple[float, float]:
-        """Radii of both base circles [m]: r cos(alpha_t)."""
+        """Radii of both base circles [m]: reference radius times cos(alpha_t), transverse pressure angle."""
         first, second = (r * np.cos(self.transverse_angle) for r in self.reference_radii)
         return float(first), float(second)
 
@@ -74,16 +84,21 @@ class InvoluteGearPair:
         if (total := sum(self.profile_shifts)) == 0.0:
             return self.transverse_angle
         shift = 2.0 * np.tan(self.pressure_angle) * total / sum(self.tooth_counts)
-        target = float(involute(self.transverse_angle) + shift)
-        if not 0.0 < target < involute(_MAX_WORKING_ANGLE):
-            raise ValueError(f"profile shifts with the sum {total:g}: the wheels mesh at no centre distance")
+        target = float(involute_function(self.transverse_angle) + shift)
+        if not 0.0 < target < involute_function(_MAX_WORKING_ANGLE):
+            raise ValueError(
+                f"--profile-shift: with the sum {total:g}, the wheels mesh at no centre distance; expected "
+                "a sum nearer to 0"
+            )
         from scipy.optimize import brentq  # here: the commands start without scipy
 
-        return float(brentq(lambda angle: involute(angle) - target, 0.0, _MAX_WORKING_ANGLE, xtol=1e-15))
+        return float(
+            brentq(lambda angle: involute_function(angle) - target, 0.0, _MAX_WORKING_ANGLE, xtol=1e-15)
+        )
 
     @property
     def working_radii(self) -> tuple[float, float]:
-        """Radii of both working pitch circles [m]: r cos(alpha_t)/cos(alpha_wt)."""
+        """Radii of both working pitch circles [m]: base radius over cos(alpha_wt), working pressure angle."""
         ratio = np.cos(self.transverse_angle) / np.cos(self.working_angle)
         first, second = (r * ratio for r in self.reference_radii)
         return float(first), float(second)
@@ -98,7 +113,8 @@ class InvoluteGearPair:
         """Radii of both tip circles [m].
 
         Without stated tip radii r + m_n (1 + x - k), where k = x_1 + x_2 - (a - r_1 - r_2)/m_n shortens the
-        tips, so that the tip clearance is that of the basic rack.
+        tips, so that the tip clearance is that of the basic rack: r reference radii, m_n normal module, x
+        profile shift coefficients, a centre distance.
         """
         if self.stated_tip_radii is not None:
             return self.stated_tip_radii
@@ -113,7 +129,7 @@ class InvoluteGearPair:
     def tip_clearances(self) -> tuple[float, float]:
         """Tip clearances [m]: between the tip of wheel 1 and the root of wheel 2, and vice versa."""
         root2, root1 = (
-            r - self.normal_module * (self.dedendum - x)
+            r - self.normal_module * (self.dedendum_over_module - x)
             for r, x in zip(self.reference_radii[::-1], self.profile_shifts[::-1], strict=True)
         )
         tip1, tip2 = self.tip_radii
@@ -127,8 +143,8 @@ class InvoluteGearPair:
             * r_a
             * (
                 (0.5 * np.pi + 2.0 * x * np.tan(self.pressure_angle)) / z
-                + involute(self.transverse_angle)
-                - involute(np.arccos(r_b / r_a))
+                + involute_function(self.transverse_angle)
+                - involute_function(np.arccos(r_b / r_a))
             )
             * np.cos(np.arctan(np.tan(self.helix_angle) * r_a / r))
             for r_a, r_b, r, z, x in zip(
@@ -144,7 +160,7 @@ class InvoluteGearPair:
 
     @property
     def undercut_limits(self) -> tuple[float, float]:
-        """Least profile shifts [1] of both wheels without undercut: 1 - z sin(alpha_t)^2/(2 cos(beta)).
+        """Smallest profile shifts [1] without undercut: 1 - z sin(alpha_t)^2/(2 cos(beta)), z teeth.
 
         The straight flanks of the tool extend one module below its datum line.
         """
@@ -158,7 +174,8 @@ class InvoluteGearPair:
     def contact_ratio(self) -> float:
         """Transverse contact ratio epsilon_alpha [1] (ISO 21771).
 
-        The mean total length of the contact lines is epsilon_alpha width/cos(beta_b), for any overlap ratio.
+        The mean total length of the contact lines is epsilon_alpha times face width over cos(beta_b), for any
+        overlap ratio; beta_b base helix angle.
         """
         base = self.base_radii
         path = sum(
@@ -178,11 +195,11 @@ class InvoluteGearPair:
         curvatures = (np.cos(base_helix) / (r * np.sin(self.working_angle)) for r in self.working_radii)
         return float(sum(curvatures))
 
-    def tooth_stiffness(self, young_moduli: tuple[float, float], torque: float) -> float:
+    def tooth_stiffness(self, young_moduli: tuple[float, float], wheel_1_torque: float) -> float:
         """Single stiffness c' times width [N/m] of one tooth pair in contact over the full width.
 
-        young_moduli : Young's moduli [Pa] of both wheels
-        torque       : [N.m] of wheel 1; below REFERENCE_LINE_LOAD the stiffness is reduced
+        young_moduli   : Young's moduli [Pa] of both wheels
+        wheel_1_torque : [N.m] of wheel 1; below REFERENCE_LINE_LOAD the stiffness is reduced
 
         ISO 6336-1, method B: solid wheels (C_R = 1), K_A = 1.
         """
@@ -190,11 +207,15 @@ class InvoluteGearPair:
         x1, x2 = self.profile_shifts
         shifts = (1.0, 1.0, 1.0, x1, x1, x2, x2, x1**2, x2**2)
         teeth = (1.0, z1, z2, 1.0, z1, 1.0, z2, 1.0, 1.0)
-        q = sum(C * x / z for C, x, z in zip(STIFFNESS_COEFFICIENTS, shifts, teeth, strict=True))  # mm um/N
-        material = 2.0 / (1.0 / young_moduli[0] + 1.0 / young_moduli[1]) / E_STEEL
-        root = 1.0 + 0.5 * (STANDARD_DEDENDUM - self.dedendum)
+        q = sum(
+            C * x / z for C, x, z in zip(TOOTH_COMPLIANCE_COEFFICIENTS, shifts, teeth, strict=True)
+        )  # mm um/N
+        material = 2.0 / (1.0 / young_moduli[0] + 1.0 / young_moduli[1]) / YOUNG_MODULUS_OF_STEEL
+        root = 1.0 + 0.5 * (STANDARD_DEDENDUM_OVER_MODULE - self.dedendum_over_module)
         rack = root * (1.0 - 0.02 * (20.0 - np.degrees(self.pressure_angle)))  # C_B
-        loaded = min(torque / self.reference_radii[0] / self.face_width / REFERENCE_LINE_LOAD, 1.0) ** 0.25
+        loaded = (
+            min(wheel_1_torque / self.reference_radii[0] / self.face_width / REFERENCE_LINE_LOAD, 1.0) ** 0.25
+        )
         theory = 1e9 / q * np.cos(self.helix_angle) * material * self.face_width
         return float(TOOTH_STIFFNESS_CORRECTION * rack * loaded * theory)
 
@@ -206,7 +227,7 @@ class InvoluteGearPair:
         return tooth_stiffness * (0.75 * self.contact_ratio + 0.25)
 
     def mesh_damping(self, mesh_stiffness: float, densities: tuple[float, float]) -> float:
-        """Damping [N.s/m] along the line of action: 2 DAMPING_RATIO sqrt(stiffness mass).
+        """Damping [N.s/m] along the line of action: 2 MESH_DAMPING_RATIO sqrt(stiffness mass).
 
         mesh_stiffness : [N/m] of the mesh
         densities      : [kg/m3] of both wheels; the mass is of both wheels in series, as solid discs,
@@ -216,7 +237,7 @@ class InvoluteGearPair:
             0.5 * np.pi * rho * self.face_width * r**4 / b**2
             for rho, r, b in zip(densities, self.reference_radii, self.base_radii, strict=True)
         ]
-        return float(2.0 * DAMPING_RATIO * np.sqrt(mesh_stiffness / (1.0 / masses[0] + 1.0 / masses[1])))
+        return float(2.0 * MESH_DAMPING_RATIO * np.sqrt(mesh_stiffness / (1.0 / masses[0] + 1.0 / masses[1])))
 
     def check_geometry(self) -> None:
         """Raise ValueError, one line, for wheels that cannot mesh.
@@ -227,7 +248,10 @@ class InvoluteGearPair:
         diameters = [f"tip diameter {2e3 * r:.6g} mm of wheel {i}" for i, r in enumerate(self.tip_radii, 1)]
         for diameter, tip, base in zip(diameters, self.tip_radii, self.base_radii, strict=True):
             if tip <= base:
-                raise ValueError(f"{diameter} is not above the base diameter {2e3 * base:.6g} mm")
+                raise ValueError(
+                    f"{diameter} is not above the base diameter {2e3 * base:.6g} mm; increase "
+                    "--tip-diameter or --profile-shift"
+                )
         for i, diameter in enumerate(diameters):
             if self.tip_thicknesses[i] <= 0.0:
                 raise ValueError(
@@ -239,17 +263,20 @@ class InvoluteGearPair:
                     "--tip-diameter"
                 )
         if (ratio := self.contact_ratio) < 1.0:
-            raise ValueError(f"contact_ratio = {ratio:.4g} of the wheels is below 1: the teeth lose contact")
+            raise ValueError(
+                f"contact_ratio = {ratio:.4g} is below 1: the teeth lose contact; increase --tip-diameter "
+                "or reduce --profile-shift"
+            )
 
-    def find_warnings(self) -> list[str]:
+    def find_geometry_warnings(self) -> list[str]:
         """Find thin tips, undercut, interference and profile shifts outside ISO 6336-1, one line each."""
         warnings = []
         tangent = self.centre_distance * np.sin(self.working_angle)
         for i in (0, 1):
-            if (ratio := self.tip_thicknesses[i] / self.normal_module) < MIN_TIP_THICKNESS:
+            if (ratio := self.tip_thicknesses[i] / self.normal_module) < MIN_TIP_THICKNESS_OVER_MODULE:
                 warnings.append(
                     f"the teeth of wheel {i + 1} are {ratio:.2g} modules thick at the tip; usual are at "
-                    f"least {MIN_TIP_THICKNESS:g}"
+                    f"least {MIN_TIP_THICKNESS_OVER_MODULE:g}"
                 )
             if (x := self.profile_shifts[i]) < (least := self.undercut_limits[i]):
                 warnings.append(
@@ -262,7 +289,7 @@ class InvoluteGearPair:
                     "contact ratio is too large"
                 )
         x1, x2 = self.profile_shifts
-        low, high = PROFILE_SHIFT_SUMS
+        low, high = VALID_PROFILE_SHIFT_SUM_RANGE
         if x1 < x2 or not low <= x1 + x2 <= high:
             warnings.append(
                 f"ISO 6336-1 states the tooth stiffness for x1 >= x2 and {low:g} <= x1 + x2 <= {high:g}; "
@@ -270,17 +297,20 @@ class InvoluteGearPair:
             )
         return warnings
 
-    def check_centre_distance(self, distance: float) -> None:
+    def check_centre_distance(self, stated_distance: float) -> None:
         """Raise ValueError, one line, if a stated centre distance [m] contradicts the profile shifts."""
-        if abs(distance - self.centre_distance) <= MAX_DISTANCE_ERROR * self.normal_module:
+        if (
+            abs(stated_distance - self.centre_distance)
+            <= MAX_CENTRE_DISTANCE_ERROR_OVER_MODULE * self.normal_module
+        ):
             return
         x1, x2 = self.profile_shifts
         message = (
-            f"--centre-distance = {1e3 * distance:.7g} mm, but --profile-shift {x1:g} {x2:g} gives "
+            f"--centre-distance = {1e3 * stated_distance:.7g} mm, but --profile-shift {x1:g} {x2:g} gives "
             f"{1e3 * self.centre_distance:.7g} mm"
         )
-        if (cosine := sum(self.base_radii) / distance) < 1.0:
-            difference = involute(np.arccos(cosine)) - involute(self.transverse_angle)
+        if (cosine := sum(self.base_radii) / stated_distance) < 1.0:
+            difference = involute_function(np.arccos(cosine)) - involute_function(self.transverse_angle)
             total = 0.5 * difference * sum(self.tooth_counts) / np.tan(self.pressure_angle)
             message += f"; the stated distance needs shifts with the sum {round(float(total), 4):g}"
         raise ValueError(message)
@@ -290,6 +320,6 @@ _MAX_WORKING_ANGLE = 1.4
 """Largest transverse working pressure angle [rad]."""
 
 
-def involute(angle: float) -> float:
+def involute_function(angle: float) -> float:
     """Involute function of an angle [rad]: tan(angle) - angle."""
     return float(np.tan(angle) - angle)

@@ -10,21 +10,21 @@ from jointfmu.joints.gear_mesh.spring import MeshParameters, tabulate_tooth_pair
 from jointfmu.mechanics.curve import Curve, tabulate_approach
 
 from ...common.pressure import FLANK_PRESSURE_MODEL
-from ...exchange.export.exports import Exports, LoadCurveExport
+from ...exchange.export.exports import JointExports, LoadCurveExport
 
 if TYPE_CHECKING:
     from ...exchange.export.tables import LoadTable
 
 
 def _contact_curve(mesh_parameters: MeshParameters) -> tuple[Curve, Sequence[str]]:
-    """Contact law of the flanks: pressure [Pa] over approach [m]."""
+    """Contact law of the flanks: pressure [Pa] as a function of the approach [m]."""
     return tabulate_approach(mesh_parameters), (
         "the flanks only; the deflection of the teeth is added to it",
     )
 
 
-def _load_table(mesh_parameters: MeshParameters, _working_point: None, max_error: float) -> "LoadTable":
-    """Table of force [N] over deflection [m] of a tooth pair, for other solvers."""
+def _load_table(mesh_parameters: MeshParameters, _working_point: None, max_table_error: float) -> "LoadTable":
+    """Table of the force [N] of a tooth pair as a function of its deflection [m], for other solvers."""
     from ...exchange.export.tables import LoadTable, tabulate_law
 
     pair, closing = tabulate_tooth_pair(mesh_parameters)
@@ -32,17 +32,17 @@ def _load_table(mesh_parameters: MeshParameters, _working_point: None, max_error
     columns = (pair.load, pair.stiffness, pair.stiffness_slope_start, pair.stiffness_slope_end)
     load, stiffness, start, end = (mesh_parameters.contact_ratio * column for column in columns)
     positive = tabulate_law(
-        Curve(pair.displacement - pair.displacement[i], load, stiffness, start, end), max_error
+        Curve(pair.displacement - pair.displacement[i], load, stiffness, start, end), max_table_error
     )
-    rows = np.vstack([positive.rows[:0:-1] * [-1.0, -1.0, 1.0], positive.rows])
-    return LoadTable(rows, positive.linear_errors, positive.monotone_cubic_errors)
+    rows = np.vstack([positive.table_rows[:0:-1] * [-1.0, -1.0, 1.0], positive.table_rows])
+    return LoadTable(rows, positive.linear_interpolation_errors, positive.monotone_cubic_errors)
 
 
-EXPORTS = Exports(
+EXPORTS = JointExports(
     contact=_contact_curve,
     curve=LoadCurveExport(
-        meaning="force over deflection of the flanks beyond the backlash, mean over the mesh cycle",
-        columns=tuple(KIND.variables[name] for name in ("s_rel", "f", "K")),
+        curve_meaning="force over deflection of the flanks beyond the backlash, mean over the mesh cycle",
+        curve_variables=tuple(KIND.variables[name] for name in ("s_rel", "f", "K")),
         table_name="force",
         compute_table=_load_table,
     ),

@@ -12,29 +12,34 @@ from ...common.options import Option, format_option_flag
 from ...inputs.drawing import faces
 from ...inputs.drawing.faces import FACE_OPTIONS, hertz_line_contact
 from ...inputs.drawing.part import DrawingOptions, NewJoint, NewJointCommand, ParameterSheet
-from ...inputs.drawing.quantities import parse_quantity, parse_value
-from .involute import DAMPING_RATIO, STANDARD_DEDENDUM, InvoluteGearPair
+from ...inputs.drawing.quantities import parse_quantity, parse_quantity_value
+from .involute import MESH_DAMPING_RATIO, STANDARD_DEDENDUM_OVER_MODULE, InvoluteGearPair
 
 
-def make_joint(options: DrawingOptions) -> NewJoint:
+def make_joint(drawing_options: DrawingOptions) -> NewJoint:
     """Make the parameters of a gear mesh from the options of a drawing.
 
     Raises ValueError with a one-line message for options that are invalid or contradict each other.
     """
-    wheels, torque = _parse_wheels(options), parse_value("torque", options["torque"])
+    wheels, torque = (
+        _parse_gear_pair(drawing_options),
+        parse_quantity_value("torque", drawing_options["torque"]),
+    )
     wheels.check_geometry()
-    sheet = ParameterSheet(KIND.name, faces.find_law(options))
-    faces.add_faces(sheet, options)
-    moduli = (sheet.get_value("side1.E"), sheet.get_value("side2.E"))
+    sheet = ParameterSheet(KIND.name, faces.choose_interface_law(drawing_options))
+    faces.add_face_parameters(sheet, drawing_options)
+    moduli = (sheet.get_parameter_value("side1.E"), sheet.get_parameter_value("side2.E"))
     load = torque / wheels.base_radii[0]
-    sides = [ElasticConstants(E=E, nu=sheet.get_value(f"side{i + 1}.nu")) for i, E in enumerate(moduli)]
+    sides = [
+        ElasticConstants(E=E, nu=sheet.get_parameter_value(f"side{i + 1}.nu")) for i, E in enumerate(moduli)
+    ]
     hertz = hertz_line_contact(load, wheels.face_width, wheels.relative_curvature, contact_modulus(*sides))
     tooth_stiffness = wheels.tooth_stiffness(moduli, torque)
-    _add_parameters(sheet, wheels, options, tooth_stiffness)
+    _add_mesh_parameters(sheet, wheels, drawing_options, tooth_stiffness)
     text = f"Hertz's line contact at the pitch point, one pair under {torque:g} N.m of wheel 1"
     sheet.add_parameter("A_0", float(hertz.area), "derived", text)
-    file = sheet.build_file(
-        f"wheels of module {options['module']}, {wheels.tooth_counts[0]:g} to "
+    file = sheet.build_parameter_file(
+        f"wheels of module {drawing_options['module']}, {wheels.tooth_counts[0]:g} to "
         f"{wheels.tooth_counts[1]:g} teeth"
     )
     spring = GearMeshSpring.tabulate(file.values)
@@ -52,7 +57,7 @@ def make_joint(options: DrawingOptions) -> NewJoint:
         "contact_ratio": (wheels.contact_ratio, "1", "mean number of pairs in contact over the full width"),
         "overlap_ratio": (wheels.overlap_ratio, "1", "mesh cycles over which a helix spreads the contact"),
         "K_tooth": (file.values_by_name["K_tooth"], "N/m", "bending of one pair (ISO 6336-1)"),
-        **faces.height_fact(file),
+        **faces.derive_rms_height(file),
         "K": (stiffness, "N/m", "mean stiffness of the mesh at this load"),
         "c_gamma": (
             wheels.mesh_stiffness(file.values_by_name["K_tooth"]),
@@ -75,64 +80,74 @@ def make_joint(options: DrawingOptions) -> NewJoint:
         "tip_diameter2": (2.0 * wheels.tip_radii[1], "m", "tip diameter of wheel 2"),
         "deflection": (deflection, "m", "deflection of a tooth pair at this load"),
     }
-    hardness_warnings = faces.warn_hardness(float(hertz.peak_pressure), sheet.get_value("H"))
-    return NewJoint(file, facts, [*wheels.find_warnings(), *hardness_warnings])
+    hardness_warnings = faces.warn_pressure_above_hardness(
+        float(hertz.peak_pressure), sheet.get_parameter_value("H")
+    )
+    return NewJoint(file, facts, [*wheels.find_geometry_warnings(), *hardness_warnings])
 
 
-def _parse_wheels(options: DrawingOptions) -> InvoluteGearPair:
+def _parse_gear_pair(drawing_options: DrawingOptions) -> InvoluteGearPair:
     """Gear pair of both wheels, from the options of their geometry."""
-    teeth = _parse_pair("teeth", options["teeth"])
+    teeth = _parse_two_values("teeth", drawing_options["teeth"])
     if any(z % 1.0 for z in teeth):
-        raise ValueError(f"--teeth = {' '.join(options['teeth'])}: expected whole numbers")
+        raise ValueError(f"--teeth = {' '.join(drawing_options['teeth'])}: expected whole numbers")
     angles = []
     for name, default, lowest, highest in (
         ("pressure_angle", "20", 0.0, 45.0),
         ("helix_angle", "0", -1.0, 60.0),
     ):
-        angle = parse_value(name, options[name] or default)
+        angle = parse_quantity_value(name, drawing_options[name] or default)
         if not max(lowest, 0.0) <= np.degrees(angle) < highest or (lowest == 0.0 and angle == 0.0):
             lower_end = "(0" if lowest == 0.0 else "[0"
             raise ValueError(
-                f"{format_option_flag(name)} = {options[name]} deg is outside {lower_end}, {highest:g})"
+                f"{format_option_flag(name)} = {drawing_options[name]} deg is outside {lower_end}, "
+                f"{highest:g})"
             )
         angles.append(angle)
-    width, module = (parse_value(name, options[name]) for name in ("width", "module"))
-    shifts, tips = options["profile_shift"], options["tip_diameter"]
-    tip_diameters = _parse_pair("tip_diameter", tips) if tips is not None else None
+    width, module = (parse_quantity_value(name, drawing_options[name]) for name in ("width", "module"))
+    shifts, tips = drawing_options["profile_shift"], drawing_options["tip_diameter"]
+    tip_diameters = _parse_two_values("tip_diameter", tips) if tips is not None else None
     gear_pair = InvoluteGearPair(
         module,
         teeth,
         width,
         angles[0],
         angles[1],
-        profile_shifts=(0.0, 0.0) if shifts is None else _parse_pair("profile_shift", shifts),
+        profile_shifts=(0.0, 0.0) if shifts is None else _parse_two_values("profile_shift", shifts),
         stated_tip_radii=(0.5 * tip_diameters[0], 0.5 * tip_diameters[1]) if tip_diameters else None,
-        dedendum=parse_value("dedendum", options["dedendum"] or f"{STANDARD_DEDENDUM:g}"),
+        dedendum_over_module=parse_quantity_value(
+            "dedendum", drawing_options["dedendum"] or f"{STANDARD_DEDENDUM_OVER_MODULE:g}"
+        ),
     )
-    if options["centre_distance"] is not None:
-        gear_pair.check_centre_distance(parse_value("centre_distance", options["centre_distance"]))
+    if drawing_options["centre_distance"] is not None:
+        gear_pair.check_centre_distance(
+            parse_quantity_value("centre_distance", drawing_options["centre_distance"])
+        )
     return gear_pair
 
 
-def _parse_pair(option_name: str, texts: Sequence[str]) -> tuple[float, float]:
+def _parse_two_values(option_name: str, option_texts: Sequence[str]) -> tuple[float, float]:
     """Parse the two numbers of an option for wheel 1 and wheel 2.
 
-    Raises ValueError for another count, and as `parse_value`.
+    Raises ValueError for another count of numbers, and for a bad number or unit.
     """
-    if len(texts) != 2:
+    if len(option_texts) != 2:
         raise ValueError(
-            f"{format_option_flag(option_name)} has {len(texts)} values, expected one of each wheel"
+            f"{format_option_flag(option_name)} has {len(option_texts)} values, expected 2: one for each "
+            "wheel"
         )
-    return parse_value(option_name, texts[0]), parse_value(option_name, texts[1])
+    return parse_quantity_value(option_name, option_texts[0]), parse_quantity_value(
+        option_name, option_texts[1]
+    )
 
 
-def _add_parameters(
+def _add_mesh_parameters(
     parameter_sheet: ParameterSheet,
     gear_pair: InvoluteGearPair,
-    options: DrawingOptions,
+    drawing_options: DrawingOptions,
     tooth_stiffness: float,
 ) -> None:
-    """Add the parameters that follow from the gear geometry to the sheet.
+    """Add the parameters that follow from the gear geometry to the parameter sheet.
 
     tooth_stiffness : [N/m] of one tooth pair
     """
@@ -141,13 +156,15 @@ def _add_parameters(
             f"r_b{i + 1}", radius, "derived", "m_n z cos(alpha_t)/(2 cos(beta)) of the drawing"
         )
     parameter_sheet.add_drawing_value("teeth1", gear_pair.tooth_counts[0])
-    if options["backlash"] is None:
+    if drawing_options["backlash"] is None:
         distance = gear_pair.centre_distance * 1e3
         min_backlash = 2.0 / 3.0 * (0.06 + 0.0005 * distance + 0.03 * gear_pair.normal_module * 1e3) * 1e-3
         text = f"least backlash of ISO/TR 10064-2, Annex A, at {distance:.4g} mm of centre distance"
         parameter_sheet.add_parameter("backlash", min_backlash, "estimate", text)
     else:
-        parameter_sheet.add_drawing_number("backlash", parse_quantity("backlash", options["backlash"]))
+        parameter_sheet.add_drawing_number(
+            "backlash", parse_quantity("backlash", drawing_options["backlash"])
+        )
     parameter_sheet.add_parameter(
         "K_tooth", tooth_stiffness, "derived", "single stiffness c' of ISO 6336-1, method B, times the width"
     )
@@ -158,10 +175,12 @@ def _add_parameters(
         "overlap_ratio", gear_pair.overlap_ratio, "derived", "b sin(beta)/(pi m_n) of ISO 21771"
     )
     parameter_sheet.add_parameter("engagement", 0.3, "estimate", "see docs/gear_mesh.md")
-    density = tuple(material.numbers["density"].value for material in faces.read_materials(options))
+    density = tuple(
+        material.sourced_numbers["density"].si_value for material in faces.read_materials(drawing_options)
+    )
     d = gear_pair.mesh_damping(tooth_stiffness * gear_pair.contact_ratio, (density[0], density[1]))
     parameter_sheet.add_parameter(
-        "d", d, "estimate", f"a damping ratio of {DAMPING_RATIO:g} for the wheels as solid discs"
+        "d", d, "estimate", f"a damping ratio of {MESH_DAMPING_RATIO:g} for the wheels as solid discs"
     )
     for name in ("phi1", "phi2"):
         parameter_sheet.add_parameter(
@@ -170,15 +189,15 @@ def _add_parameters(
 
 
 NEW_JOINT_COMMAND = NewJointCommand(
-    description="the mesh of two external involute wheels",
-    example="--module 4 --teeth 29 45 --width 20 --torque 150 --material 'hardened steel' --Ra 0.4",
-    options=(
+    joint_description="the mesh of two external involute gear wheels",
+    example_options="--module 4 --teeth 29 45 --width 20 --torque 150 --material 'hardened steel' --Ra 0.4",
+    command_options=(
         Option("module", "normal module [mm]", "M", is_required=True),
-        Option("teeth", "numbers of teeth of wheel 1 and wheel 2", "Z", is_list=True, is_required=True),
+        Option("teeth", "number of teeth of wheel 1 and of wheel 2", "Z", is_list=True, is_required=True),
         Option("width", "common face width [mm]", "B", is_required=True),
         Option(
             "torque",
-            "working torque of wheel 1 [N.m]; it determines the contact patch",
+            "working torque on wheel 1 [N.m]; it determines the size of the contact patch",
             "T",
             is_required=True,
         ),
@@ -192,18 +211,22 @@ NEW_JOINT_COMMAND = NewJointCommand(
         ),
         Option(
             "centre_distance",
-            "centre distance without backlash [mm]; it must agree with --profile-shift",
+            "centre distance without backlash [mm], to check: it must agree with --profile-shift",
             "A",
         ),
         Option(
             "tip_diameter",
-            "tip diameters of wheel 1 and wheel 2 [mm] (default: addendum of one module, shortened tips)",
+            "tip diameters of wheel 1 and wheel 2 [mm] (default: for an addendum of one module, with tip "
+            "shortening)",
             "D",
             is_list=True,
         ),
-        Option("dedendum", "dedendum of the basic rack over the module [1] (default: 1.2)", "H"),
+        Option("dedendum", "dedendum of the basic rack divided by the module [1] (default: 1.2)", "H"),
         Option(
-            "backlash", "backlash along the line of action [um] (default: minimum of ISO/TR 10064-2)", "J"
+            "backlash",
+            "backlash along the line of action [um] (default: minimum of ISO/TR 10064-2 for this centre "
+            "distance)",
+            "J",
         ),
         *FACE_OPTIONS,
     ),

@@ -24,11 +24,11 @@ def _check_deflection_and_work(fmu_folder: Path, ramp_result: RampResult) -> tup
     mesh = load_default("gear_mesh").values
     assert isinstance(mesh, GearMeshParameters)
 
-    def compliance(force: Array) -> Array:
+    def compliance(mesh_force: Array) -> Array:
         """Compliance 1/K [m/N] of the mesh at forces [N]."""
-        return 1.0 / (mesh.A_0 * stiffness_curve(mesh, force / mesh.A_0)[0]) + 1.0 / mesh.K_tooth
+        return 1.0 / (mesh.A_0 * stiffness_curve(mesh, mesh_force / mesh.A_0)[0]) + 1.0 / mesh.K_tooth
 
-    c = ramp_result.columns
+    c = ramp_result.variable_columns
     pair = c["f"] / c["pairs"]
     first = int(np.argmax(pair > _FULL_CONTACT_FORCE))
     rows = np.linspace(first, pair.size - 1, 4).astype(int)
@@ -47,39 +47,39 @@ A check is a function: (folder, ramp of the FMU) -> (name of the compared
 quantity, largest relative deviation [1])."""
 
 
-_FIGURE_FORCES = (5e2, 1e3, 2e3)
+_PLOTTED_MESH_FORCES = (5e2, 1e3, 2e3)
 """Constant forces of the mesh [N] in the figures over the mesh cycle."""
 
 
-def make_figures(job_result: Any) -> list[Figure]:
-    """Make the figures of the gear mesh, from the results of the main job (`PipelineResult`)."""
+def make_figures(pipeline_result: Any) -> list[Figure]:
+    """Make the figures of the gear mesh, from the results of building all FMUs (`PipelineResult`)."""
     return [
         Figure(
             "Stiffness and deflection over the mesh cycle",
             "At constant forces. The number of tooth pairs in contact changes; flanks with "
             "a larger force are stiffer.",
-            mesh_cycle_charts(GearMeshSpring.tabulate(load_default("gear_mesh").values)),
+            make_mesh_cycle_charts(GearMeshSpring.tabulate(load_default("gear_mesh").values)),
         ),
         Figure(
             "Torque over angle",
             "Torque on wheel 1 with wheel 2 fixed: backlash and contact on both flanks. Second chart: "
             "detail at first contact.",
-            torque_angle_charts(job_result.ramps["GearMesh"]),
+            make_torque_angle_charts(pipeline_result.load_ramps["GearMesh"]),
             data_file="GearMesh.csv",
         ),
     ]
 
 
-def mesh_cycle_charts(spring: GearMeshSpring) -> list[Panel]:
+def make_mesh_cycle_charts(mesh_spring: GearMeshSpring) -> list[Panel]:
     """Charts of stiffness and deflection over two mesh cycles, at constant forces."""
     phase = np.linspace(0.0, 2.0, 401)
-    mesh = spring.joint
+    mesh = mesh_spring.joint
     count, _ = pairs_in_contact(mesh.contact_ratio, mesh.engagement, mesh.overlap_ratio, phase)
     stiffness, deflection = [], []
-    for force in _FIGURE_FORCES:
-        s = spring.curve.inverse(force / count)
+    for force in _PLOTTED_MESH_FORCES:
+        s = mesh_spring.curve.inverse(force / count)
         name = f"{force / 1e3:g} kN"
-        stiffness.append(Series(name, phase, count * spring.curve.derivatives(s, 1)[1] / 1e6))
+        stiffness.append(Series(name, phase, count * mesh_spring.curve.derivatives(s, 1)[1] / 1e6))
         deflection.append(Series(name, phase, s * 1e6))
     over = "phase of the mesh cycle"
     return [
@@ -88,9 +88,9 @@ def mesh_cycle_charts(spring: GearMeshSpring) -> list[Panel]:
     ]
 
 
-def torque_angle_charts(ramp_result: RampResult) -> list[Panel]:
+def make_torque_angle_charts(ramp_result: RampResult) -> list[Panel]:
     """Charts of the torque on wheel 1 over its angle: for both flanks, and near the first contact."""
-    angle, torque = ramp_result.columns["phi1"] * 1e3, -ramp_result.columns["tau1"]
+    angle, torque = ramp_result.variable_columns["phi1"] * 1e3, -ramp_result.variable_columns["tau1"]
     first = int(np.argmax(torque > 0.0))
     rows = slice(max(first - 3, 0), first + 15)
     curve = np.concatenate([-angle[::-1], angle]), np.concatenate([-torque[::-1], torque])

@@ -24,11 +24,11 @@ STIFFNESS_COLUMNS = (
     CatalogueColumn("K1", "N.m/rad", "stiffness below T1", "N.m/rad"),
     CatalogueColumn("K2", "N.m/rad", "stiffness between T1 and T2", "N.m/rad"),
     CatalogueColumn("K3", "N.m/rad", "stiffness above T2", "N.m/rad"),
-    CatalogueColumn("T1", "N.m", "torque at the first corner", "N.m"),
-    CatalogueColumn("T2", "N.m", "torque at the second corner", "N.m"),
+    CatalogueColumn("T1", "N.m", "torque up to which K1 holds", "N.m"),
+    CatalogueColumn("T2", "N.m", "torque up to which K2 holds", "N.m"),
 )
 """Columns of the torsional stiffness."""
-STIFFNESS_COLUMN_NAMES = tuple(column.name for column in STIFFNESS_COLUMNS)
+STIFFNESS_COLUMN_NAMES = tuple(column.column_name for column in STIFFNESS_COLUMNS)
 """Names of the columns of the torsional stiffness."""
 CATALOGUE_COLUMNS = (
     CatalogueColumn("ratio", "1", "speed ratio", "1"),
@@ -45,18 +45,18 @@ CATALOGUE_COLUMNS = (
     CatalogueColumn("efficiency", "1", "at rated torque and 2000 rev/min", "1"),
 )
 """All columns of the catalogue."""
-RATIOS_FROM_80 = ("80", "100", "120", "160")
+SPEED_RATIOS_OF_80_AND_MORE = ("80", "100", "120", "160")
 """Ratios of the drives in a row for "ratio 80 and more", if any series has a torque for this size and
 ratio."""
 ACTUATOR_SERIES = ("CHA", "FHA", "RSF")
 """Series with a built-in motor; their published torques are not torques of the gear alone."""
 HIGH_TORQUE_SERIES = ("CSG", "SHG")
-"""Series with higher torques than the others, by the factor HIGH_TORQUE_OVER_STANDARD_SERIES."""
-TABLE_END_OVER_RATED_TORQUE = 4.0
+"""Series with higher torques than the others, by the factor HIGH_OVER_STANDARD_SERIES_TORQUE."""
+MAX_OVER_RATED_TORQUE = 4.0
 """Largest torque of the table (max_torque) over rated torque [1], if no repeated peak torque is known.
 
 Catalogue drives have about this ratio."""
-HIGH_TORQUE_OVER_STANDARD_SERIES = 1.3
+HIGH_OVER_STANDARD_SERIES_TORQUE = 1.3
 """Torque of a CSG drive over torque of a CSF drive of the same size and ratio [1]."""
 SERIES_WITH_PUBLISHED_TORQUES = ("CSG", "SHG", "HFUC", "HFUS")
 """Series with published torques, in the order in which they serve as estimates for other series."""
@@ -71,41 +71,47 @@ def find_drive(drive_name: str) -> CatalogueEntry:
 
     Raises ValueError with similar names if there is no such drive.
     """
-    known = {_normalise_name(item.name): item for item in list_drives()}
+    known = {_normalise_name(item.joint_name): item for item in list_drives()}
     wanted = _normalise_name(drive_name)
     matches = [item for key, item in known.items() if wanted == key or wanted.startswith(f"{key}-")]
     if matches:
-        return max(matches, key=lambda item: len(item.name))
-    joined = [item for key, item in known.items() if _join_name(key) == _join_name(wanted)]
+        return max(matches, key=lambda item: len(item.joint_name))
+    joined = [
+        item for key, item in known.items() if _remove_name_separators(key) == _remove_name_separators(wanted)
+    ]
     if len(joined) == 1:
         return joined[0]
-    similar = ", ".join(find_similar_names(drive_name, (item.name for item in list_drives())))
+    similar = ", ".join(find_similar_names(drive_name, (item.joint_name for item in list_drives())))
     hint = f"nearest are {similar}" if similar else "allowed are the names of the catalogue"
-    raise ValueError(f"catalogue {drive_name!r} is unknown; {hint} (jointfmu catalogue)")
+    raise ValueError(f"catalogue {drive_name!r} is unknown; {hint} (jointfmu catalogue lists all)")
 
 
-def find_ratio(drive: CatalogueEntry, other_ratio: float) -> CatalogueEntry:
+def find_drive_with_ratio(catalogue_entry: CatalogueEntry, wanted_ratio: float) -> CatalogueEntry:
     """Find the catalogue's drive with the series and size of a given drive, and with another speed ratio.
 
     Raises ValueError with the ratios of the catalogue if there is no such drive.
     """
     siblings = {
-        item.numbers["ratio"].value: item
+        item.known_numbers["ratio"].si_value: item
         for item in list_drives()
-        if _name_without_ratio(item) == _name_without_ratio(drive)
+        if _name_without_ratio(item) == _name_without_ratio(catalogue_entry)
     }
-    if other_ratio in siblings:
-        return siblings[other_ratio]
+    if wanted_ratio in siblings:
+        return siblings[wanted_ratio]
     raise ValueError(
-        f"--ratio = {other_ratio:g} is not in the catalogue for {_name_without_ratio(drive).strip('-')}, "
-        f"allowed are {', '.join(f'{known:g}' for known in sorted(siblings))} (jointfmu catalogue); without "
-        "--catalogue, state the numbers of the row"
+        f"--ratio = {wanted_ratio:g} is not in the catalogue for "
+        f"{_name_without_ratio(catalogue_entry).strip('-')}, allowed are "
+        f"{', '.join(f'{known:g}' for known in sorted(siblings))} (jointfmu catalogue); without --catalogue, "
+        "state the numbers of the row"
     )
 
 
-def _name_without_ratio(drive: CatalogueEntry) -> str:
+def _name_without_ratio(catalogue_entry: CatalogueEntry) -> str:
     """Catalogue name of a drive without its speed ratio, for example CSG-25 for CSG-25-100."""
-    parts, ratio = drive.name.split("-"), f"{drive.numbers['ratio'].value:g}"
+    parts, ratio = (
+        catalogue_entry.joint_name.split("-"),
+        f"{catalogue_entry.known_numbers['ratio'].si_value:g}",
+    )
     places = [place for place, part in enumerate(parts) if part == ratio]
     return "-".join(part for place, part in enumerate(parts) if place != (places or [len(parts)])[-1])
 
@@ -113,12 +119,14 @@ def _name_without_ratio(drive: CatalogueEntry) -> str:
 @cache
 def list_drives() -> tuple[CatalogueEntry, ...]:
     """All drives of the catalogue, with a stiffness row of their own or one that several drives share."""
-    torques = {(row["series"], row["size"], row["ratio"]): row for row in _read_table("torque")}
+    torques = {(row["series"], row["size"], row["ratio"]): row for row in _read_catalogue_table("torque")}
     drives_by_name = {
-        item.name: item for row in _read_table("stiffness") for item in _drives_of_row(row, torques)
+        item.joint_name: item
+        for row in _read_catalogue_table("stiffness")
+        for item in _drives_of_row(row, torques)
     }
-    for row in _read_table("friction"):
-        drives_by_name[row["drive"]] = _make_entry_with_friction(row, drives_by_name[row["like"]])
+    for row in _read_catalogue_table("friction"):
+        drives_by_name[row["drive"]] = _make_catalogue_entry_with_friction(row, drives_by_name[row["like"]])
     drives = collect_published_friction(drives_by_name.values())
     return tuple(add_friction_estimates(item, drives) for item in drives_by_name.values())
 
@@ -130,7 +138,7 @@ def _drives_of_row(stiffness_row: Mapping[str, str], torque_table: TorqueTable) 
     if stiffness_row["ratio"].endswith("+"):
         ratios = [
             r
-            for r in RATIOS_FROM_80
+            for r in SPEED_RATIOS_OF_80_AND_MORE
             if any((s, stiffness_row["size"], r) in torque_table for s in SERIES_WITH_PUBLISHED_TORQUES)
         ]
     source = (
@@ -153,15 +161,15 @@ def _drives_of_row(stiffness_row: Mapping[str, str], torque_table: TorqueTable) 
             yield CatalogueEntry(name, numbers)
 
 
-def _estimate_K3(stiffness_row: Mapping[str, str], source: str) -> SourcedNumber:
-    """Estimate of K3 if it is not published: K3 of a drive with equal T1, T2, K1 and K2, else K2."""
+def _estimate_K3(stiffness_row: Mapping[str, str], row_source: str) -> SourcedNumber:
+    """Estimate of the stiffness K3 above torque T2: K3 of a drive with equal T1, T2, K1 and K2, else K2."""
     known = [heading for column, heading in _STIFFNESS_HEADINGS.items() if column != "K3"]
-    for other in _read_table("stiffness"):
+    for other in _read_catalogue_table("stiffness"):
         if other["K3"] and all(float(other[h]) == float(stiffness_row[h]) for h in known):
             what = f"{other['series']}, size {other['size']}, ratio {other['ratio']}"
             text = f"not in the source; that of {what}, of the same T1, T2, K1 and K2 ({other['source']})"
             return SourcedNumber(float(other["K3"]), "estimate", text)
-    return SourcedNumber(float(stiffness_row["K2"]), "estimate", f"not in the source; K2 of {source}")
+    return SourcedNumber(float(stiffness_row["K2"]), "estimate", f"not in the source; K2 of {row_source}")
 
 
 _STIFFNESS_HEADINGS = {"K1": "K1_Nm_per_rad", "K2": "K2", "K3": "K3", "T1": "T1_Nm", "T2": "T2_Nm"}
@@ -188,24 +196,24 @@ _FRICTION_TABLE_HEADINGS = {
 
 
 def _rated_and_peak_torque(
-    torque_table: TorqueTable, series: str, drive_size: str, speed_ratio: str
+    torque_table: TorqueTable, drive_series: str, drive_size: str, speed_ratio: str
 ) -> dict[str, SourcedNumber]:
     """Rated and repeated peak torque of a drive: {column: number with source}.
 
     The torques are published, or else estimated from another series; empty if no series has them.
     """
-    if series.startswith(ACTUATOR_SERIES):
+    if drive_series.startswith(ACTUATOR_SERIES):
         return {}
-    for other in (series, *SERIES_WITH_PUBLISHED_TORQUES):
+    for other in (drive_series, *SERIES_WITH_PUBLISHED_TORQUES):
         if row := torque_table.get((other, drive_size, speed_ratio)):
             name = f"{other}-{drive_size}-{speed_ratio}"
-            if other == series:
+            if other == drive_series:
                 kind, ratio_to_series = "catalogue", 1.0
                 text = f"{name}: {row['source']}"
-            elif other in HIGH_TORQUE_SERIES and series not in HIGH_TORQUE_SERIES:
-                kind, ratio_to_series = "estimate", 1.0 / HIGH_TORQUE_OVER_STANDARD_SERIES
+            elif other in HIGH_TORQUE_SERIES and drive_series not in HIGH_TORQUE_SERIES:
+                kind, ratio_to_series = "estimate", 1.0 / HIGH_OVER_STANDARD_SERIES_TORQUE
                 text = (
-                    f"that of {name} over {HIGH_TORQUE_OVER_STANDARD_SERIES:g}: the catalogue gives the CSG "
+                    f"that of {name} over {HIGH_OVER_STANDARD_SERIES_TORQUE:g}: the catalogue gives the CSG "
                     "30 % more than the CSF"
                 )
             else:
@@ -217,21 +225,21 @@ def _rated_and_peak_torque(
     return {}
 
 
-def _hysteresis_limits(series: str, drive_size: str, speed_ratio: float) -> dict[str, SourcedNumber]:
+def _hysteresis_limits(drive_series: str, drive_size: str, speed_ratio: float) -> dict[str, SourcedNumber]:
     """Upper limits of hysteresis and lost motion of a drive: {column: number with source}.
 
     The limits are those of actuators of the same size, or else the largest of all actuators.
     """
     step = "30" if speed_ratio < 50.0 else "50" if speed_ratio == 50.0 else "50+"
-    rows = [row for row in _read_table("accuracy") if row["ratio"] == step]
+    rows = [row for row in _read_catalogue_table("accuracy") if row["ratio"] == step]
     same_size = [row for row in rows if row["size"] == drive_size]
     limits = {}
     for column, head in _HYSTERESIS_LIMIT_HEADINGS.items():
         row = max(same_size or rows, key=lambda row: float(row[head]))
         actuator = f"{row['series']}-{row['size']}A"
-        kind = "catalogue" if series == actuator else "estimate"
+        kind = "catalogue" if drive_series == actuator else "estimate"
         text = f"limit for the actuators {actuator}"
-        if series != actuator:
+        if drive_series != actuator:
             text += ", whose stiffness is the same"
         if not same_size:
             text = f"limit for all actuators {row['series']}, none of which has this size"
@@ -240,7 +248,7 @@ def _hysteresis_limits(series: str, drive_size: str, speed_ratio: float) -> dict
     return limits
 
 
-def _make_entry_with_friction(
+def _make_catalogue_entry_with_friction(
     friction_row: Mapping[str, str], similar_drive: CatalogueEntry
 ) -> CatalogueEntry:
     """Make the catalogue entry of a drive with published friction.
@@ -248,28 +256,28 @@ def _make_entry_with_friction(
     similar_drive : drive of the same size, ratio and stiffness, which may be the drive itself; it supplies
                     the values that are not published
     """
-    name, numbers = friction_row["drive"], dict(similar_drive.numbers)
-    if name != similar_drive.name:
-        text = f"that of {similar_drive.name}, of the same size, ratio and stiffness; "
+    name, numbers = friction_row["drive"], dict(similar_drive.known_numbers)
+    if name != similar_drive.joint_name:
+        text = f"that of {similar_drive.joint_name}, of the same size, ratio and stiffness; "
         numbers = {
-            c: SourcedNumber(n.value, "estimate", text + n.source, n.is_upper_limit)
+            c: SourcedNumber(n.si_value, "estimate", text + n.value_source, n.is_upper_limit)
             for c, n in numbers.items()
         }
     source = f"{name}: {friction_row['source']}"
     for column, (head, unit) in _FRICTION_TABLE_HEADINGS.items():
-        if friction_row[head] and (name != similar_drive.name or column not in ("ratio", "K1", "K3")):
+        if friction_row[head] and (name != similar_drive.joint_name or column not in ("ratio", "K1", "K3")):
             numbers[column] = SourcedNumber(unit * float(friction_row[head]), "catalogue", source)
     return CatalogueEntry(name, numbers)
 
 
-def _read_table(table_name: str) -> list[dict[str, str]]:
+def _read_catalogue_table(table_name: str) -> list[dict[str, str]]:
     """Read the rows of a file of the catalogue: {heading: text} each."""
     path = files("jointfmu_models") / "reference" / f"harmonic_drive_catalogue_{table_name}.csv"
     return list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
 
 
-def _join_name(drive_name: str) -> str:
-    """Join the parts of a drive's name without separators, for comparisons."""
+def _remove_name_separators(drive_name: str) -> str:
+    """Remove the separators between the parts of a drive's name, for comparisons."""
     return drive_name.replace("-", "")
 
 

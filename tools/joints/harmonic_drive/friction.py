@@ -32,7 +32,7 @@ from ...inputs.catalogue import CatalogueEntry, SourcedNumber
 
 CONFIDENCE_LEVEL = 0.95
 """Probability that a single drive lies inside its prediction interval [1]."""
-REFERENCE_SIZE, REFERENCE_RATIO = 20.0, 100.0
+REFERENCE_DRIVE_SIZE, REFERENCE_SPEED_RATIO = 20.0, 100.0
 """Reference size and reference ratio of the scaling laws [1]."""
 RUNNING_TORQUE_SIZE_EXPONENT = 3.0
 """Exponent of the size in the scaling law of the running torque [1]."""
@@ -42,15 +42,15 @@ RUNNING_TORQUE_SIZE_EXPONENT = 3.0
 class PublishedFriction:
     """Published friction of a drive; None: not published.
 
-    drive_size, ratio : [1]
-    starting_torque   : [N.m] at the wave generator
-    running_torque    : [N.m] at the wave generator, at 2000 rev/min
-    load_loss         : friction over transmitted torque [1], if the motor drives
-    load_loss_back    : friction over transmitted torque [1], if the output drives
+    drive_size, speed_ratio : [1]
+    starting_torque         : [N.m] at the wave generator
+    running_torque          : [N.m] at the wave generator, at 2000 rev/min
+    load_loss               : friction over transmitted torque [1], if the motor drives
+    load_loss_back          : friction over transmitted torque [1], if the output drives
     """
 
     drive_size: float
-    ratio: float
+    speed_ratio: float
     starting_torque: float
     running_torque: float | None
     load_loss: float | None
@@ -60,7 +60,7 @@ class PublishedFriction:
 class ScaledNumber(NamedTuple):
     """Friction number from a scaling law, with the ends of its interval, all in the same unit."""
 
-    value: float
+    central_value: float
     interval_low: float
     interval_high: float
 
@@ -69,8 +69,8 @@ class ScaledNumber(NamedTuple):
 class ScaledFriction:
     """Friction of one drive, scaled from drives with published friction.
 
-    starting_torque : [N.m]
-    viscous_torque  : [N.m] increase of the torque from start to 2000 rev/min
+    starting_torque           : [N.m]
+    viscous_torque            : [N.m] increase of the torque from start to 2000 rev/min
     load_loss, load_loss_back : [1]
     """
 
@@ -87,30 +87,34 @@ def scale_friction(
     """Scale the friction of published drives (four or more) to a drive of a size [1] and a ratio [1]."""
     starting_logs = np.array(
         [
-            (np.log(k.drive_size / REFERENCE_SIZE), np.log(k.starting_torque * k.ratio / REFERENCE_RATIO))
+            (
+                np.log(k.drive_size / REFERENCE_DRIVE_SIZE),
+                np.log(k.starting_torque * k.speed_ratio / REFERENCE_SPEED_RATIO),
+            )
             for k in published_drives
         ]
     )
     running_logs = [
-        np.log(k.running_torque / (k.drive_size / REFERENCE_SIZE) ** RUNNING_TORQUE_SIZE_EXPONENT)
+        np.log(k.running_torque / (k.drive_size / REFERENCE_DRIVE_SIZE) ** RUNNING_TORQUE_SIZE_EXPONENT)
         for k in published_drives
         if k.running_torque is not None
     ]
     design = np.stack([np.ones(len(starting_logs)), starting_logs[:, 0]], axis=1)
     reference = _scale_torque(
-        design, starting_logs[:, 1], np.array([1.0, np.log(drive_size / REFERENCE_SIZE)]), 1.0
+        design, starting_logs[:, 1], np.array([1.0, np.log(drive_size / REFERENCE_DRIVE_SIZE)]), 1.0
     )
     ones = np.ones((len(running_logs), 1))
     running = _scale_torque(
         ones,
         np.array(running_logs),
         np.ones(1),
-        (drive_size / REFERENCE_SIZE) ** RUNNING_TORQUE_SIZE_EXPONENT,
+        (drive_size / REFERENCE_DRIVE_SIZE) ** RUNNING_TORQUE_SIZE_EXPONENT,
     )
-    rise = (max(x - reference.value, 0.0) for x in running)
-    starting = ScaledNumber(*(REFERENCE_RATIO / speed_ratio * x for x in reference))
+    rise = (max(x - reference.central_value, 0.0) for x in running)
+    starting = ScaledNumber(*(REFERENCE_SPEED_RATIO / speed_ratio * x for x in reference))
     losses = (
-        _mean_loss([getattr(k, name) for k in published_drives]) for name in ("load_loss", "load_loss_back")
+        _mean_published_loss([getattr(k, name) for k in published_drives])
+        for name in ("load_loss", "load_loss_back")
     )
     return ScaledFriction(starting, ScaledNumber(*rise), *losses)
 
@@ -118,33 +122,36 @@ def scale_friction(
 def _scale_torque(
     design_matrix: Array, torque_logarithms: Array, design_row: Array, torque_factor: float
 ) -> ScaledNumber:
-    """Estimate a torque [N.m] by linear regression of its logarithm, times a factor.
+    """Estimate a torque [N.m] with its interval by linear regression of its logarithm, times a factor.
 
-    design_matrix, torque_logarithms : (n, k), (n) data of the regression
-    design_row : (k) of the drive
+    design_matrix     : (n, k) predictors of n drives with published torque, for k coefficients
+    torque_logarithms : (n) logarithms of these torques
+    design_row        : (k) predictors of the drive whose torque is estimated
     """
     value, half = _predict_with_interval(design_matrix, torque_logarithms, design_row)
     return ScaledNumber(*(torque_factor * float(np.exp(x)) for x in (value, value - half, value + half)))
 
 
-def _mean_loss(published_losses: Sequence[float | None]) -> ScaledNumber:
+def _mean_published_loss(published_losses: Sequence[float | None]) -> ScaledNumber:
     """Mean of published load-dependent losses [1], with an interval that is cut at zero."""
     published = np.array([value for value in published_losses if value is not None])
     value, half = _predict_with_interval(np.ones((published.size, 1)), published, np.ones(1))
     return ScaledNumber(value, max(value - half, 0.0), value + half)
 
 
-def _predict_with_interval(design_matrix: Array, values: Array, design_row: Array) -> tuple[float, float]:
+def _predict_with_interval(
+    design_matrix: Array, regression_values: Array, design_row: Array
+) -> tuple[float, float]:
     """Predict a value by linear regression; value, and half width of its prediction interval.
 
-    design_matrix, values : (n, k), (n) data of the regression
-    design_row            : (k) of the predicted value
+    design_matrix, regression_values : (n, k) predictors and (n) values of n observations
+    design_row                       : (k) predictors of the predicted value
     """
     from scipy.special import stdtrit
 
-    law = np.linalg.lstsq(design_matrix, values)[0]
-    freedom = values.size - law.size
-    residuals = values - design_matrix @ law
+    law = np.linalg.lstsq(design_matrix, regression_values)[0]
+    freedom = regression_values.size - law.size
+    residuals = regression_values - design_matrix @ law
     deviation = np.sqrt(
         residuals
         @ residuals
@@ -172,13 +179,13 @@ PARAMETER_OF_COLUMN: Mapping[str, tuple[str, str]] = {
 """{column: (parameter that follows from it, text for the source of the parameter)}."""
 
 
-def friction_parameters(
-    sourced_numbers: Mapping[str, SourcedNumber], stated_names: Collection[str] = ()
+def compute_friction_parameters(
+    sourced_numbers: Mapping[str, SourcedNumber], stated_number_names: Collection[str] = ()
 ) -> dict[str, SourcedNumber]:
     """Friction parameters of a drive from catalogue numbers: {parameter: number}.
 
-    sourced_numbers : ratio, rated_torque and FRICTION_COLUMNS, as far as they are known
-    stated_names    : stated numbers, of FRICTION_COLUMNS; contradictions of these numbers are errors
+    sourced_numbers     : ratio, rated_torque and FRICTION_COLUMNS, as far as they are known
+    stated_number_names : stated numbers, of FRICTION_COLUMNS; contradictions of these numbers are errors
 
     friction_coulomb = starting torque
     friction_viscous = (running torque - starting torque)/CATALOGUE_MOTOR_SPEED
@@ -192,22 +199,22 @@ def friction_parameters(
     if "starting_torque" not in sourced_numbers:
         return {}
     start, running = sourced_numbers["starting_torque"], sourced_numbers.get("running_torque")
-    ratio, rated = abs(sourced_numbers["ratio"].value), sourced_numbers.get("rated_torque")
-    _check_stated_numbers(sourced_numbers, stated_names)
+    ratio, rated = abs(sourced_numbers["ratio"].si_value), sourced_numbers.get("rated_torque")
+    _check_stated_numbers(sourced_numbers, stated_number_names)
     values: dict[str, tuple[Callable[[float], float], str]] = {"starting_torque": (lambda torque: torque, "")}
     if running is not None:
         text = f" over {CATALOGUE_MOTOR_SPEED:.4g} rad/s"
-        values["running_torque"] = (lambda torque: (torque - start.value) / CATALOGUE_MOTOR_SPEED, text)
+        values["running_torque"] = (lambda torque: (torque - start.si_value) / CATALOGUE_MOTOR_SPEED, text)
     if (output := sourced_numbers.get("efficiency")) is not None and rated is not None:
         idle = _no_load_torque_ratio(sourced_numbers)
         values["efficiency"] = (
             lambda part: 1.0 / part - 1.0 - idle,
-            f" {output.value:.4g}, less the running torque",
+            f" {output.si_value:.4g}, less the running torque",
         )
     if (back := sourced_numbers.get("back_driving_torque")) is not None:
         values["back_driving_torque"] = (
-            lambda torque: 1.0 - ratio * start.value / torque,
-            f" {back.value:.4g} N.m over ratio times starting torque",
+            lambda torque: 1.0 - ratio * start.si_value / torque,
+            f" {back.si_value:.4g} N.m over ratio times starting torque",
         )
     parameters = {
         PARAMETER_OF_COLUMN[name][0]: _make_friction_parameter(name, sourced_numbers[name], *value)
@@ -220,34 +227,40 @@ def friction_parameters(
 
 def _no_load_torque_ratio(sourced_numbers: Mapping[str, SourcedNumber]) -> float:
     """Running torque over rated torque at the motor [1]; starting torque if no running torque is known."""
-    torque = sourced_numbers.get("running_torque", sourced_numbers["starting_torque"]).value
-    return torque * abs(sourced_numbers["ratio"].value) / sourced_numbers["rated_torque"].value
+    torque = sourced_numbers.get("running_torque", sourced_numbers["starting_torque"]).si_value
+    return torque * abs(sourced_numbers["ratio"].si_value) / sourced_numbers["rated_torque"].si_value
 
 
 def _check_stated_numbers(
-    sourced_numbers: Mapping[str, SourcedNumber], stated_names: Collection[str]
+    sourced_numbers: Mapping[str, SourcedNumber], stated_number_names: Collection[str]
 ) -> None:
-    """Check stated numbers. Raises ValueError if one of them would make a friction parameter negative."""
-    start, ratio = sourced_numbers["starting_torque"].value, abs(sourced_numbers["ratio"].value)
+    """Check the friction numbers that the user states for a drive.
+
+    Raises ValueError if a number would make a friction parameter negative.
+    """
+    start, ratio = sourced_numbers["starting_torque"].si_value, abs(sourced_numbers["ratio"].si_value)
     ends = {
         "running_torque": (start, "the starting torque"),
         "back_driving_torque": (ratio * start, "ratio times starting torque"),
     }
     for name, (lowest, bound_text) in ends.items():
-        if name in stated_names and sourced_numbers[name].value < (1.0 - _STATED_LIMIT_TOLERANCE) * lowest:
-            value = f"{format_option_flag(name)} = {sourced_numbers[name].value:g} N.m"
+        if (
+            name in stated_number_names
+            and sourced_numbers[name].si_value < (1.0 - _STATED_LIMIT_TOLERANCE) * lowest
+        ):
+            value = f"{format_option_flag(name)} = {sourced_numbers[name].si_value:g} N.m"
             raise ValueError(f"{value} is outside [{lowest:.6g}, inf) N.m: it is at least {bound_text}")
-    if "back_driving_torque" in stated_names and "rated_torque" in sourced_numbers:
-        back, rated = (sourced_numbers[name].value for name in ("back_driving_torque", "rated_torque"))
+    if "back_driving_torque" in stated_number_names and "rated_torque" in sourced_numbers:
+        back, rated = (sourced_numbers[name].si_value for name in ("back_driving_torque", "rated_torque"))
         if back > rated:
             raise ValueError(
                 f"--back-driving-torque = {back:g} N.m is above the rated torque, {rated:g} N.m; check the "
                 f"unit, as in {back:g}mN.m"
             )
-    if "efficiency" in stated_names and "rated_torque" in sourced_numbers:
+    if "efficiency" in stated_number_names and "rated_torque" in sourced_numbers:
         highest, stated_value = (
             1.0 / (1.0 + _no_load_torque_ratio(sourced_numbers)),
-            sourced_numbers["efficiency"].value,
+            sourced_numbers["efficiency"].si_value,
         )
         if stated_value > (1.0 + _STATED_LIMIT_TOLERANCE) * highest:
             raise ValueError(
@@ -257,41 +270,56 @@ def _check_stated_numbers(
 
 
 def _make_friction_parameter(
-    friction_column: str, catalogue_number: SourcedNumber, convert: Callable[[float], float], source_text: str
+    friction_column: str,
+    catalogue_number: SourcedNumber,
+    convert_to_parameter: Callable[[float], float],
+    source_text: str,
 ) -> SourcedNumber:
     """Make the friction parameter from a catalogue number, with source and interval.
 
-    convert : number -> parameter
+    convert_to_parameter : catalogue number -> value of the parameter
     """
-    kind = "derived" if source_text and catalogue_number.origin != "estimate" else catalogue_number.origin
+    kind = (
+        "derived"
+        if source_text and catalogue_number.value_origin != "estimate"
+        else catalogue_number.value_origin
+    )
     source, interval = (
-        f"{catalogue_number.source}; {PARAMETER_OF_COLUMN[friction_column][1]}{source_text}",
+        f"{catalogue_number.value_source}; {PARAMETER_OF_COLUMN[friction_column][1]}{source_text}",
         None,
     )
-    if catalogue_number.interval is not None:
+    if catalogue_number.estimate_interval is not None:
         low, high = sorted(
-            max(round(convert(end), _INTERVAL_DECIMALS), 0.0) for end in catalogue_number.interval
+            max(round(convert_to_parameter(end), _INTERVAL_DECIMALS), 0.0)
+            for end in catalogue_number.estimate_interval
         )
         interval = low, high
         source += f"; {describe_interval(interval)}"
-    return SourcedNumber(max(convert(catalogue_number.value), 0.0), kind, source, interval=interval)
+    return SourcedNumber(
+        max(convert_to_parameter(catalogue_number.si_value), 0.0), kind, source, estimate_interval=interval
+    )
 
 
-def describe_interval(interval: tuple[float, float]) -> str:
+def describe_interval(confidence_interval: tuple[float, float]) -> str:
     """Format an interval as text, for the entry `source` of a parameter."""
-    return f"{100.0 * CONFIDENCE_LEVEL:g} % interval {interval[0]:.4g} to {interval[1]:.4g}"
+    return (
+        f"{100.0 * CONFIDENCE_LEVEL:g} % interval {confidence_interval[0]:.4g} to "
+        f"{confidence_interval[1]:.4g}"
+    )
 
 
-def rated_efficiency(drive: DriveParameters, temperature: float = REFERENCE_TEMPERATURE) -> float:
+def compute_rated_efficiency(
+    drive_parameters: DriveParameters, lubricant_temperature: float = REFERENCE_TEMPERATURE
+) -> float:
     """Efficiency [1] of a drive at rated torque and CATALOGUE_MOTOR_SPEED, without hysteresis.
 
-    temperature : [K] of the lubricant
+    lubricant_temperature : [K] of the lubricant
     """
-    transmitted = drive.rated_torque / abs(drive.ratio)
-    load = -math.copysign(drive.rated_torque, drive.ratio)
-    friction_torque = friction_limits(drive, CATALOGUE_MOTOR_SPEED, load, temperature)[0] + viscous_torque(
-        drive, CATALOGUE_MOTOR_SPEED, temperature
-    )
+    transmitted = drive_parameters.rated_torque / abs(drive_parameters.ratio)
+    load = -math.copysign(drive_parameters.rated_torque, drive_parameters.ratio)
+    friction_torque = friction_limits(drive_parameters, CATALOGUE_MOTOR_SPEED, load, lubricant_temperature)[
+        0
+    ] + viscous_torque(drive_parameters, CATALOGUE_MOTOR_SPEED, lubricant_temperature)
     return float(transmitted / (transmitted + friction_torque))
 
 
@@ -301,26 +329,33 @@ def collect_published_friction(
     """Collect the friction {drive: (friction, maker)} of all drives with a published starting torque."""
     found = {}
     for item in catalogue_entries:
-        printed = {name: number for name, number in item.numbers.items() if number.origin == "catalogue"}
+        printed = {
+            name: number for name, number in item.known_numbers.items() if number.value_origin == "catalogue"
+        }
         if "starting_torque" in printed:
-            maker = printed["starting_torque"].source.partition(": ")[2].partition(",")[0]
-            found[item.name] = _published_friction(item.name, item.numbers["ratio"].value, printed), maker
+            maker = printed["starting_torque"].value_source.partition(": ")[2].partition(",")[0]
+            found[item.joint_name] = (
+                _published_friction(item.joint_name, item.known_numbers["ratio"].si_value, printed),
+                maker,
+            )
     return found
 
 
 def _published_friction(
     drive_name: str, speed_ratio: float, sourced_numbers: Mapping[str, SourcedNumber]
 ) -> PublishedFriction:
-    """Published friction of one drive; the losses follow from its numbers by `friction_parameters`."""
-    losses = friction_parameters({"ratio": SourcedNumber(speed_ratio, "catalogue", ""), **sourced_numbers})
+    """Published friction of one drive; losses follow from published efficiency and back-driving torque."""
+    losses = compute_friction_parameters(
+        {"ratio": SourcedNumber(speed_ratio, "catalogue", ""), **sourced_numbers}
+    )
     running = sourced_numbers.get("running_torque")
     return PublishedFriction(
         parse_drive_size(drive_name),
         speed_ratio,
-        sourced_numbers["starting_torque"].value,
-        running.value if running else None,
-        losses["load_loss"].value if "efficiency" in sourced_numbers else None,
-        losses["load_loss_back"].value if "back_driving_torque" in sourced_numbers else None,
+        sourced_numbers["starting_torque"].si_value,
+        running.si_value if running else None,
+        losses["load_loss"].si_value if "efficiency" in sourced_numbers else None,
+        losses["load_loss_back"].si_value if "back_driving_torque" in sourced_numbers else None,
     )
 
 
@@ -336,13 +371,13 @@ def add_friction_estimates(
 ) -> CatalogueEntry:
     """Add estimates of the friction numbers that are not published for a drive.
 
-    published_drives : result of `collect_published_friction`
+    published_drives : {drive: (its published friction, its maker)}
 
     Without a rated torque there is no estimate of the efficiency.
     """
-    numbers, ratio = dict(catalogue_entry.numbers), catalogue_entry.numbers["ratio"].value
+    numbers, ratio = dict(catalogue_entry.known_numbers), catalogue_entry.known_numbers["ratio"].si_value
     published = tuple(each for each, _ in published_drives.values())
-    law = scale_friction(parse_drive_size(catalogue_entry.name), ratio, published)
+    law = scale_friction(parse_drive_size(catalogue_entry.joint_name), ratio, published)
     makers: dict[str, list[str]] = {}
     for name, (_, maker) in published_drives.items():
         makers.setdefault(maker, []).append(name)
@@ -356,14 +391,14 @@ def add_friction_estimates(
         """
         interval = min(interval_ends), max(interval_ends)
         numbers.setdefault(
-            friction_column, SourcedNumber(estimated_value, "estimate", text, interval=interval)
+            friction_column, SourcedNumber(estimated_value, "estimate", text, estimate_interval=interval)
         )
 
     add_column_estimate("starting_torque", *law.starting_torque)
-    start = numbers["starting_torque"].value
+    start = numbers["starting_torque"].si_value
     add_column_estimate("running_torque", *(start + x for x in law.viscous_torque))
     add_column_estimate("back_driving_torque", *(ratio * start / (1.0 - x) for x in law.load_loss_back))
     if rated := numbers.get("rated_torque"):
-        idle = 1.0 + numbers["running_torque"].value * ratio / rated.value
+        idle = 1.0 + numbers["running_torque"].si_value * ratio / rated.si_value
         add_column_estimate("efficiency", *(1.0 / (idle + x) for x in law.load_loss))
-    return CatalogueEntry(catalogue_entry.name, numbers)
+    return CatalogueEntry(catalogue_entry.joint_name, numbers)

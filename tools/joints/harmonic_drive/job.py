@@ -29,15 +29,15 @@ from . import efficiency
 
 
 def _check_compliance(fmu_folder: Path, ramp_result: ramp.RampResult) -> tuple[str, float]:
-    """Compare the wind-up along the ramp of the FMU with torque input with the integral of its compliance."""
-    c = ramp_result.columns
+    """Compare the wind-up along the load ramp of HarmonicDriveCompliance with its integrated compliance."""
+    c = ramp_result.variable_columns
     phi = cumulative_simpson(1.0 / c["K_WTS"], x=c["tau"], initial=0.0)
     return "phi_rel against the integral of dT/K_WTS (scipy, Simpson)", relative_deviation(c["phi_rel"], phi)
 
 
 def _check_stiffness(fmu_folder: Path, ramp_result: ramp.RampResult) -> tuple[str, float]:
-    """Compare the torque along the ramp of the FMU with motion input with the integral of its stiffness."""
-    c = ramp_result.columns
+    """Compare the torque along the load ramp of HarmonicDriveSpring with the integral of its stiffness."""
+    c = ramp_result.variable_columns
     tau = cumulative_simpson(c["K_WTS"], x=c["phi_rel"], initial=0.0)
     return "tau against the integral of K_WTS dphi (scipy, Simpson)", relative_deviation(c["tau"], tau)
 
@@ -48,28 +48,28 @@ relative deviation [1])."""
 
 
 def compute_through_fmu(published_point: PublishedPoint, fmu_folder: Path) -> float | None:
-    """Compute a published point by running an FMU of a folder; None if no FMU has this quantity."""
+    """Compute a published quantity by running an FMU of the folder; None if no FMU outputs the quantity."""
     where = published_point.where
 
-    def run_drive(output_name: str, **settings: float) -> float:
-        """Run the FMU with other parameters at the torque of the published point; returns one output."""
+    def run_drive_fmu(output_name: str, **settings: float) -> float:
+        """Run the FMU with changed parameters at the torque of the published point; returns one output."""
         torque = where["torque"]
         fmu = fmu_folder / "HarmonicDriveCompliance.fmu"
-        return float(ramp.run_ramp(fmu, "tau", torque, torque, settings).columns[output_name][-1])
+        return float(ramp.run_ramp(fmu, "tau", torque, torque, settings).variable_columns[output_name][-1])
 
     if published_point.quantity == "K_TS":
         changes = {"radial_deformation": where["deformation"]} if "deformation" in where else {}
-        return run_drive("K_TS_pair", **changes)
+        return run_drive_fmu("K_TS_pair", **changes)
     if published_point.quantity == "K_TS_least":
         ends = (where["lower"], where["upper"])
-        return min(run_drive("K_TS_pair", radial_deformation=w) for w in ends)
+        return min(run_drive_fmu("K_TS_pair", radial_deformation=w) for w in ends)
     if published_point.quantity == "K_TS_change":
-        changed = run_drive("K_TS_pair", eccentricity=where["eccentricity"])
-        return 100.0 * (changed / run_drive("K_TS_pair") - 1.0)
+        changed = run_drive_fmu("K_TS_pair", eccentricity=where["eccentricity"])
+        return 100.0 * (changed / run_drive_fmu("K_TS_pair") - 1.0)
     if published_point.quantity == "K_WTS":
-        return run_drive("K_WTS")
+        return run_drive_fmu("K_WTS")
     if published_point.quantity == "peak_pressure":
-        return run_drive("p_max")
+        return run_drive_fmu("p_max")
     return None
 
 
@@ -77,21 +77,21 @@ _COMPLIANCE_FMU = "HarmonicDriveCompliance"
 """Name of the FMU with torque as input."""
 
 
-def make_figures(job_result: Any) -> list[Figure]:
-    """Make the figures of the harmonic drive, from the results of the main job (`PipelineResult`)."""
-    result = job_result.ramps[_COMPLIANCE_FMU]
+def make_figures(pipeline_result: Any) -> list[Figure]:
+    """Make the figures of the harmonic drive, from the results of building all FMUs (`PipelineResult`)."""
+    result = pipeline_result.load_ramps[_COMPLIANCE_FMU]
     return [
         Figure(
             "Stiffness over torque",
             "First chart: the outputs K_WTS and K_TS (contact pair) of the FMU. Second chart: the contact "
             "pair on the scale of the paper's figures.",
-            stiffness_charts(result, job_result.validated_points),
+            make_stiffness_charts(result, pipeline_result.validated_points),
             data_file=f"{_COMPLIANCE_FMU}.csv",
         ),
         Figure(
             "Torque over wind-up",
             "Integral of dT/K_WTS; antisymmetric in the torque.",
-            [torque_angle_chart(result)],
+            [make_torque_angle_chart(result)],
             data_file=f"{_COMPLIANCE_FMU}.csv",
         ),
         Figure(
@@ -102,25 +102,25 @@ def make_figures(job_result: Any) -> list[Figure]:
             "and friction_viscous, the efficiency load_loss, the back-driving torque load_loss_back. For "
             "CSF drives the running torque is an estimate; there the back-driving torque determines both, "
             "if the result is not negative.",
-            friction_charts(_spring_fmu(job_result)),
+            make_friction_charts(_spring_fmu(pipeline_result)),
         ),
     ]
 
 
-def _spring_fmu(job_result: Any) -> Path:
+def _spring_fmu(pipeline_result: Any) -> Path:
     """Path of the FMU HarmonicDriveSpring, FMI 2.0."""
-    paths: list[Path] = job_result.fmu_paths
+    paths: list[Path] = pipeline_result.fmu_paths
     return next(p for p in paths if (p.parent.name, p.stem) == ("fmi2", "HarmonicDriveSpring"))
 
 
-def friction_charts(fmu_path: Path) -> list[Panel]:
+def make_friction_charts(fmu_path: Path) -> list[Panel]:
     """Charts of efficiency over load and of back-driving torque of catalogue drives, from an FMU."""
     panels, published_torques, found_torques = [], [], []
     drives, share = efficiency.drives_with_friction(), np.linspace(0.1, 1.0, 41) ** 2
     for drive in drives:
-        rated = drive.numbers["rated_torque"].value
-        published_torque = drive.numbers["back_driving_torque"].value
-        with efficiency.open_fmu_test_rig(fmu_path, efficiency.friction_and_ratio(drive)) as bench:
+        rated = drive.known_numbers["rated_torque"].si_value
+        published_torque = drive.known_numbers["back_driving_torque"].si_value
+        with efficiency.open_fmu_test_rig(fmu_path, efficiency.ratio_and_friction_parameters(drive)) as bench:
             rows = {
                 rpm: [bench.efficiency(rpm * np.pi / 30.0, load) for load in rated * share]
                 for rpm in (500, 2000, 3500)
@@ -128,36 +128,46 @@ def friction_charts(fmu_path: Path) -> list[Panel]:
             found_torques.append(bench.back_driving_torque(10.0 * published_torque))
         published_torques.append(published_torque)
         series = [Series(f"{rpm} rev/min", rated * share, row) for rpm, row in rows.items()]
-        if "efficiency" in drive.numbers:
-            published_efficiency = [drive.numbers["efficiency"].value]
+        if "efficiency" in drive.known_numbers:
+            published_efficiency = [drive.known_numbers["efficiency"].si_value]
             series.append(
-                Series("published, 2000 rev/min", [rated], published_efficiency, "empty", titles=[drive.name])
+                Series(
+                    "published, 2000 rev/min",
+                    [rated],
+                    published_efficiency,
+                    "empty",
+                    marker_tooltips=[drive.joint_name],
+                )
             )
-        panels.append(Panel(f"Efficiency of {drive.name}", "load [N m]", "efficiency", series))
+        panels.append(Panel(f"Efficiency of {drive.joint_name}", "load [N m]", "efficiency", series))
     ends = [0.0, max(published_torques)]
-    names = [drive.name for drive in drives]
-    marks = Series("FMU", published_torques, found_torques, "full", titles=names)
-    series_with_diagonal = [marks, Series("equal", ends, ends, dashed=True)]
+    names = [drive.joint_name for drive in drives]
+    marks = Series("FMU", published_torques, found_torques, "full", marker_tooltips=names)
+    series_with_diagonal = [marks, Series("equal", ends, ends, is_dashed=True)]
     return [*panels, Panel("Back-driving torque", "published [N m]", "FMU [N m]", series_with_diagonal)]
 
 
-def stiffness_charts(ramp_result: RampResult, validated_points: list[ValidatedPoint]) -> list[Panel]:
+def make_stiffness_charts(ramp_result: RampResult, validated_points: list[ValidatedPoint]) -> list[Panel]:
     """Charts of the stiffness of the drive and of its contact pair over torque, with published points."""
-    c = ramp_result.columns
-    points = [row.point for row in validated_points]
+    c = ramp_result.variable_columns
+    points = [row.published_point for row in validated_points]
     drive = [Series(name, c["tau"], c[name]) for name in ("K_WTS", "K_TS")]
     drive += published_series([p for p in points if p.quantity == "K_WTS"], "torque")
-    least = [row for row in validated_points if row.point.quantity == "K_TS_least"]
-    most = [r for r in validated_points if r.point.quantity == "K_TS" and "deformation" in r.point.where]
+    least = [row for row in validated_points if row.published_point.quantity == "K_TS_least"]
+    most = [
+        r
+        for r in validated_points
+        if r.published_point.quantity == "K_TS" and "deformation" in r.published_point.where
+    ]
     ends = [*most, *least]
     pair = [
         Series("K_TS on the paper's scale", c["tau"], c["K_TS_pair"]),
         Series(
             "computed: maximum and minimum over w",
-            [r.point.where["torque"] for r in ends],
+            [r.published_point.where["torque"] for r in ends],
             [float(r.computed_value) for r in ends],
             "empty",
-            titles=[r.point.id for r in ends],
+            marker_tooltips=[r.published_point.id for r in ends],
         ),
         *published_series([p for p in points if p.quantity in ("K_TS", "K_TS_least")], "torque"),
     ]
@@ -167,9 +177,12 @@ def stiffness_charts(ramp_result: RampResult, validated_points: list[ValidatedPo
     ]
 
 
-def torque_angle_chart(ramp_result: RampResult) -> Panel:
+def make_torque_angle_chart(ramp_result: RampResult) -> Panel:
     """Chart of the torque over the wind-up, for both directions."""
-    tau, angle = ramp_result.columns["tau"], np.degrees(ramp_result.columns["phi_rel"]) * 60.0
+    tau, angle = (
+        ramp_result.variable_columns["tau"],
+        np.degrees(ramp_result.variable_columns["phi_rel"]) * 60.0,
+    )
     both = np.concatenate([-angle[::-1], angle]), np.concatenate([-tau[::-1], tau])
     return Panel("Torque over wind-up", "wind-up [arcmin]", "torque [N m]", [Series("torque", *both)])
 
@@ -178,34 +191,34 @@ VIBRATION_TORQUES_OVER_RATED = (0.0, 0.1, 0.2, 0.4, 0.7, 1.0)
 """Torques over the rated torque [1] of the simulated free vibrations."""
 
 
-def _vibration_torques(path: Path, parameters: Mapping[str, float]) -> list[float]:
+def _vibration_torques(fmu_path: Path, start_values: Mapping[str, float]) -> list[float]:
     """Mean torques [N.m] at which free vibrations of a drive are simulated: zero to rated torque."""
-    with Slave(path, parameters, (), ("rated_torque",)) as drive:
+    with Slave(fmu_path, start_values, (), ("rated_torque",)) as drive:
         (rated,) = drive.get_outputs()
     return [share * rated for share in VIBRATION_TORQUES_OVER_RATED]
 
 
-def _rest_state(path: Path, torque: float, parameters: Mapping[str, float]) -> WorkingPoint:
+def _make_working_point(fmu_path: Path, torque: float, start_values: Mapping[str, float]) -> WorkingPoint:
     """Working point of a drive under a torque [N.m], about which the body vibrates."""
-    with Slave(path, {**parameters, "w2": 1.0}, ("w1",), ("tau",)) as dashpot:
+    with Slave(fmu_path, {**start_values, "w2": 1.0}, ("w1",), ("tau",)) as dashpot:
         (damping,) = dashpot.get_outputs()
-    with Slave(path, parameters, ("phi2", "w2"), ("tau", "K_WTS")) as law:
+    with Slave(fmu_path, start_values, ("phi2", "w2"), ("tau", "K_WTS")) as law:
         angle, stiffness = _wind_up_and_stiffness(law, torque)
     return WorkingPoint(torque, angle, stiffness, damping)
 
 
-def _wind_up_and_stiffness(drive: Slave, torque: float) -> tuple[float, float]:
+def _wind_up_and_stiffness(drive_fmu: Slave, torque: float) -> tuple[float, float]:
     """Wind-up [rad] and stiffness [N.m/rad] of a drive under a torque [N.m]."""
 
-    def torque_and_stiffness(angle: float) -> tuple[float, float]:
+    def torque_and_stiffness(wind_up_angle: float) -> tuple[float, float]:
         """Torque [N.m] and stiffness [N.m/rad] of the drive at an angle [rad]."""
-        drive.set_inputs(angle, 0.0)
-        transmitted, stiffness = drive.get_outputs()
+        drive_fmu.set_inputs(wind_up_angle, 0.0)
+        transmitted, stiffness = drive_fmu.get_outputs()
         return transmitted, stiffness
 
-    def transmitted_torque(angle: float) -> float:
+    def transmitted_torque(wind_up_angle: float) -> float:
         """Torque [N.m] of the drive at an angle [rad]."""
-        return torque_and_stiffness(angle)[0]
+        return torque_and_stiffness(wind_up_angle)[0]
 
     angle = efficiency.solve_wind_up(transmitted_torque, torque, torque_and_stiffness(0.0)[1])
     return angle, torque_and_stiffness(angle)[1]
@@ -219,7 +232,7 @@ VIBRATION_TEST = VibrationTest(
     load_variable="tau",
     find_example_loads=_vibration_torques,
     find_start_values=lambda torque: {},
-    find_working_point=_rest_state,
+    find_working_point=_make_working_point,
     release_force=1e-3,
     load_axis=PlotAxis("torque", "N m", 1.0),
     deflection_axis=PlotAxis("wind-up", "urad", 1e6),
@@ -271,14 +284,19 @@ _TRANSMISSION_VIEW = TransmissionView(
     default_speed=200.0,
 )
 """Animation of the drive on the laboratory page."""
-_LOAD_CYCLE = MODELS["HarmonicDriveSpring"].load_cycle
+_DRIVE_LOAD_CYCLE = MODELS["HarmonicDriveSpring"].load_cycle
 """Load cycle of the FMU that shows hysteresis."""
-_EXAMPLE_DRIVE = efficiency.drives_with_friction()[0]
+_LABORATORY_EXAMPLE_DRIVE = efficiency.drives_with_friction()[0]
 """Catalogue drive of the example with friction."""
 _LABORATORY_EXAMPLE = ExampleValues(
-    f"friction of the catalogue's {_EXAMPLE_DRIVE.name}, 1 arcmin of hysteresis and of kinematic error",
-    {k: v for k, v in efficiency.friction_and_ratio(_EXAMPLE_DRIVE).items() if k != "ratio"}
-    | {k: float(v) for k, v in (_LOAD_CYCLE.variable_values if _LOAD_CYCLE else {}).items()}
+    f"friction of the catalogue's {_LABORATORY_EXAMPLE_DRIVE.joint_name}, 1 arcmin of hysteresis and of "
+    "kinematic error",
+    {
+        k: v
+        for k, v in efficiency.ratio_and_friction_parameters(_LABORATORY_EXAMPLE_DRIVE).items()
+        if k != "ratio"
+    }
+    | {k: float(v) for k, v in (_DRIVE_LOAD_CYCLE.variable_values if _DRIVE_LOAD_CYCLE else {}).items()}
     | {"error_2": 1.5e-4},
 )
 """Values that the example button of the laboratory page sets."""
@@ -286,13 +304,13 @@ _LABORATORY_EXAMPLE = ExampleValues(
 LABORATORY_MODELS = {
     "HarmonicDriveSpring": LaboratoryModel(
         slider_spans=_LABORATORY_INPUT_RANGES,
-        path_inputs=("phi2",),
-        transmission=_TRANSMISSION_VIEW,
-        example=_LABORATORY_EXAMPLE,
+        pointer_inputs=("phi2",),
+        transmission_view=_TRANSMISSION_VIEW,
+        example_values=_LABORATORY_EXAMPLE,
     ),
     "HarmonicDriveCompliance": LaboratoryModel(
         slider_spans=_LABORATORY_INPUT_RANGES,
-        path_inputs=("tau",),
+        pointer_inputs=("tau",),
         published_points={
             "K_TS": PublishedQuantity("K_TS_pair", _PUBLISHED_POINT_INPUTS),
             "K_WTS": PublishedQuantity("K_WTS", _PUBLISHED_POINT_INPUTS),

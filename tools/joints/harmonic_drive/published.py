@@ -10,8 +10,8 @@ from jointfmu.contact.laws import kogut_etsion
 from jointfmu.contact.surface import hardness_coefficient
 from jointfmu.joints.harmonic_drive.law import (
     HarmonicDriveParameters,
+    contact_pair_stiffness,
     drive_stiffness,
-    pair_stiffness,
     peak_pressure,
 )
 
@@ -19,40 +19,49 @@ from ...studies.published.computed import CalibrationFit, PublishedNumbers
 
 
 def K_TS(
-    drive: HarmonicDriveParameters, torque: float, deformation: float | None = None, eccentricity: float = 0.0
+    drive_parameters: HarmonicDriveParameters,
+    torque: float,
+    deformation: float | None = None,
+    eccentricity: float = 0.0,
 ) -> float:
-    """Stiffness K_TS [N.m/rad] of the contact pair, on the scale of the paper.
+    """Stiffness K_TS [N.m/rad] of the contact pair, on the scale of the figures in Hu 2023.
 
     torque       : [N.m]
-    deformation  : [m] radial deformation; None: that of the drive
-    eccentricity : [m]
+    deformation  : [m] radial deformation of the flexspline; None: that of the drive
+    eccentricity : [m] between flexspline and bearing
     """
-    w = drive.radial_deformation if deformation is None else deformation
-    changed = replace(drive, radial_deformation=w, eccentricity=eccentricity)
-    return float(pair_stiffness(changed, torque)[0] / drive.drive_scale)
+    w = drive_parameters.radial_deformation if deformation is None else deformation
+    changed = replace(drive_parameters, radial_deformation=w, eccentricity=eccentricity)
+    return float(contact_pair_stiffness(changed, torque)[0] / drive_parameters.drive_scale)
 
 
-def smallest_K_TS(drive: HarmonicDriveParameters, torque: float, lower: float, upper: float) -> float:
-    """Smallest K_TS [N.m/rad] at a torque [N.m], over 41 radial deformations from `lower` to `upper` [m]."""
-    return min(K_TS(drive, torque, w) for w in np.linspace(lower, upper, 41).tolist())
+def smallest_K_TS(
+    drive_parameters: HarmonicDriveParameters, torque: float, lower: float, upper: float
+) -> float:
+    """Smallest stiffness K_TS [N.m/rad] of the contact pair at radial deformations `lower` to `upper` [m]."""
+    return min(K_TS(drive_parameters, torque, w) for w in np.linspace(lower, upper, 41).tolist())
 
 
-def relative_K_TS_change(drive: HarmonicDriveParameters, torque: float, eccentricity: float) -> float:
-    """Relative change [%] of K_TS by an eccentricity [m], at a torque [N.m] and the nominal deformation."""
-    return 100.0 * (K_TS(drive, torque, eccentricity=eccentricity) / K_TS(drive, torque) - 1.0)
+def relative_K_TS_change(
+    drive_parameters: HarmonicDriveParameters, torque: float, eccentricity: float
+) -> float:
+    """Relative change [%] of the contact pair's stiffness K_TS by an eccentricity [m], at a torque [N.m]."""
+    return 100.0 * (
+        K_TS(drive_parameters, torque, eccentricity=eccentricity) / K_TS(drive_parameters, torque) - 1.0
+    )
 
 
-def K_WTS(drive: HarmonicDriveParameters, torque: float) -> float:
+def K_WTS(drive_parameters: HarmonicDriveParameters, torque: float) -> float:
     """Stiffness K_WTS [N.m/rad] of the drive at a torque [N.m]."""
-    return float(drive_stiffness(drive, torque)[0])
+    return float(drive_stiffness(drive_parameters, torque)[0])
 
 
-def drive_peak_pressure(drive: HarmonicDriveParameters, torque: float) -> float:
+def drive_peak_pressure(drive_parameters: HarmonicDriveParameters, torque: float) -> float:
     """Peak contact pressure [Pa] at a torque [N.m]."""
-    return float(peak_pressure(drive, torque)[0])
+    return float(peak_pressure(drive_parameters, torque)[0])
 
 
-def kogut_etsion_constant(drive: HarmonicDriveParameters, product: str, stage: int) -> float:
+def kogut_etsion_constant(drive_parameters: HarmonicDriveParameters, product: str, stage: int) -> float:
     """Constant [1] of an elastic-plastic stage of Kogut and Etsion, written as a function of the spot area.
 
     product : "load" or "stiffness": factor of the power law; "area": area at the end of the stage over area
@@ -61,63 +70,62 @@ def kogut_etsion_constant(drive: HarmonicDriveParameters, product: str, stage: i
     """
     if product == "area":
         return float(
-            (kogut_etsion.SECOND_STAGE_AREA_OVER_FIRST_YIELD, kogut_etsion.PLASTIC_AREA_OVER_FIRST_YIELD)[
-                stage - 1
-            ]
+            (kogut_etsion.SECOND_STAGE_OVER_YIELD_AREA, kogut_etsion.FULL_PLASTIC_OVER_YIELD_AREA)[stage - 1]
         )
     powers = kogut_etsion.eliminate_deformation(
-        (kogut_etsion.FIRST_STAGE, kogut_etsion.SECOND_STAGE)[stage - 1]
+        (kogut_etsion.FIRST_ELASTIC_PLASTIC_STAGE, kogut_etsion.SECOND_ELASTIC_PLASTIC_STAGE)[stage - 1]
     )
     return powers.load_factor if product == "load" else powers.stiffness_factor
 
 
-def plastic_onset_pressure(drive: HarmonicDriveParameters, nu: float) -> float:
+def plastic_onset_pressure(drive_parameters: HarmonicDriveParameters, nu: float) -> float:
     """Mean pressure over hardness [1] of a spot at the onset of full plasticity, by Kogut and Etsion.
 
     nu : Poisson's ratio [1]
     """
-    stage, w = kogut_etsion.SECOND_STAGE, kogut_etsion.PLASTIC_DEFORMATION_OVER_FIRST_YIELD
+    stage, w = kogut_etsion.SECOND_ELASTIC_PLASTIC_STAGE, kogut_etsion.FULL_PLASTIC_OVER_YIELD_DEFORMATION
     load_per_area = stage.load_factor * w**stage.load_exponent / (stage.area_factor * w**stage.area_exponent)
     return float(2.0 / 3.0 * hardness_coefficient(nu) * load_per_area)
 
 
-def shear_over_friction(drive: HarmonicDriveParameters, stage: str) -> float:
-    """Tangential force over friction limit, t/(mu f) [1], of a spot at the end of a stage.
+def shear_over_friction(drive_parameters: HarmonicDriveParameters, stage: str) -> float:
+    """Shear force of a contact spot over its friction limit [1], at the end of a stage of its deformation.
 
-    The shear stress on the spot is tau_b = sigma_s/sqrt(3).
+    The shear stress on the spot is the yield stress over sqrt(3).
 
-    stage : end of "elastic", of the "first" or of the "second" elastic-plastic stage
+    stage : "elastic", or the "first" or "second" elastic-plastic stage
     """
-    law = drive.law
+    law = drive_parameters.law
     first, second = (
-        kogut_etsion.eliminate_deformation(s) for s in (kogut_etsion.FIRST_STAGE, kogut_etsion.SECOND_STAGE)
+        kogut_etsion.eliminate_deformation(s)
+        for s in (kogut_etsion.FIRST_ELASTIC_PLASTIC_STAGE, kogut_etsion.SECOND_ELASTIC_PLASTIC_STAGE)
     )
     load, area = {
         "elastic": (1.0, 1.0),
         "first": (
-            first.load_factor * kogut_etsion.SECOND_STAGE_AREA_OVER_FIRST_YIELD**first.load_exponent,
-            kogut_etsion.SECOND_STAGE_AREA_OVER_FIRST_YIELD,
+            first.load_factor * kogut_etsion.SECOND_STAGE_OVER_YIELD_AREA**first.load_exponent,
+            kogut_etsion.SECOND_STAGE_OVER_YIELD_AREA,
         ),
         "second": (
-            second.load_factor * kogut_etsion.PLASTIC_AREA_OVER_FIRST_YIELD**second.load_exponent,
-            kogut_etsion.PLASTIC_AREA_OVER_FIRST_YIELD,
+            second.load_factor * kogut_etsion.FULL_PLASTIC_OVER_YIELD_AREA**second.load_exponent,
+            kogut_etsion.FULL_PLASTIC_OVER_YIELD_AREA,
         ),
     }[stage]
     pressure = 2.0 / 3.0 * hardness_coefficient(law.side1.nu) * law.hardness * load / area
     return float(law.sigma_y / np.sqrt(3.0) / (law.mu * pressure))
 
 
-def smallest_mean_pressure(drive: HarmonicDriveParameters) -> float:
-    """Mean pressure F_r/S_r [Pa] on the spots, if the largest spot has the critical area s_ec.
+def smallest_mean_pressure(drive_parameters: HarmonicDriveParameters) -> float:
+    """Load over real contact area [Pa], if the largest spot has the area at the limit of elastic deformation.
 
-    Then all spots are elastic. This is the smallest F_r/S_r of all larger spots.
+    Then all spots are elastic. A larger largest spot gives a larger load over real area.
     """
-    state = evaluate_at_largest_spot(drive.law, hu.critical_area(drive.law))
+    state = evaluate_at_largest_spot(drive_parameters.law, hu.critical_area(drive_parameters.law))
     return float(state["F"] / state["A_r"])
 
 
 PUBLISHED_NUMBERS = PublishedNumbers(
-    papers=("hu2023",),
+    paper_names=("hu2023",),
     observable_functions={
         "K_TS": K_TS,
         "K_TS_least": smallest_K_TS,
@@ -129,7 +137,7 @@ PUBLISHED_NUMBERS = PublishedNumbers(
         "shear_over_friction": shear_over_friction,
         "least_mean_pressure": smallest_mean_pressure,
     },
-    calibration=(
+    calibration_fits=(
         CalibrationFit(
             {
                 "zero_torque_pressure": 30e6,

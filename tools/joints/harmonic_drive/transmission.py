@@ -15,7 +15,7 @@ from ...exchange.robots.transmission import Transmission
 
 
 def make_transmission(parameter_file: ParameterFile) -> Transmission:
-    """Make the transmission of a robot with the spring and friction of a drive.
+    """Make the robot joint model `Transmission` with stiffness and friction of a harmonic drive.
 
     Raises ValueError if the joint of the file is not a drive.
     """
@@ -36,9 +36,9 @@ def make_transmission(parameter_file: ParameterFile) -> Transmission:
         return np.array(found)
 
     return Transmission(
-        name=parameter_file.name,
+        drive_name=parameter_file.name,
         ratio=drive.ratio,
-        damping=drive.d,
+        output_damping=drive.d,
         rated_torque=drive.rated_torque,
         max_torque=float(spring.curve.end_point[1]),
         dry_friction=drive.friction_coulomb,
@@ -51,22 +51,22 @@ def make_transmission(parameter_file: ParameterFile) -> Transmission:
     )
 
 
-def _list_missing_effects(drive: DriveParameters) -> Iterator[str]:
+def _list_missing_effects(drive_parameters: DriveParameters) -> Iterator[str]:
     """Effects of the drive that the model `Transmission` lacks, as text."""
-    if drive.load_loss or drive.effective_load_loss_back:
+    if drive_parameters.load_loss or drive_parameters.effective_load_loss_back:
         loss, back = (
-            share * drive.rated_torque / abs(drive.ratio)
-            for share in (drive.load_loss, drive.effective_load_loss_back)
+            share * drive_parameters.rated_torque / abs(drive_parameters.ratio)
+            for share in (drive_parameters.load_loss, drive_parameters.effective_load_loss_back)
         )
         yield (
             "friction that grows with the load: at rated torque "
             f"{loss:.4g} N.m at the motor if the motor drives the load, {back:.4g} N.m if the load drives "
             "the motor"
         )
-    if drive.friction_coulomb or drive.friction_viscous:
+    if drive_parameters.friction_coulomb or drive_parameters.friction_viscous:
         yield "the temperature of the lubricant: friction is that at 20 degrees C"
-    if ripple := drive.friction_1 + drive.friction_2:
+    if ripple := drive_parameters.friction_1 + drive_parameters.friction_2:
         yield f"the friction over the turn of the motor, up to {ripple:.3g} N.m"
-    error = sum(abs(getattr(drive, f"error_{n}")) for n in KINEMATIC_ERROR_HARMONICS)
+    error = sum(abs(getattr(drive_parameters, f"error_{n}")) for n in KINEMATIC_ERROR_HARMONICS)
     if error:
         yield f"the kinematic error, up to {error:.3g} rad"

@@ -5,11 +5,11 @@ from jointfmu.joints.harmonic_drive import KIND
 from ...studies.uncertainty.curves import LoadCurves
 
 UNCERTAINTY_CURVES = LoadCurves(
-    model="HarmonicDriveCompliance",
-    load=KIND.variables["tau"],
+    fmu_name="HarmonicDriveCompliance",
+    ramped_input=KIND.variables["tau"],
     outputs=tuple(KIND.variables[name] for name in ("K_WTS", "phi_rel")),
-    default_end=lambda drive: float(drive.rated_torque),
+    default_ramp_end=lambda drive: float(drive.rated_torque),
     max_load=lambda drive: drive.max_table_torque,
-    settings={"hysteresis_loss": 0.0},
+    fixed_parameters={"hysteresis_loss": 0.0},
 )
 """Quantities of the harmonic drive along its load ramp."""

@@ -12,11 +12,11 @@ from pathlib import Path
 
 from jointfmu_fmu_src.joint_parts import chart
 from jointfmu_fmu_src.licence import read_webassembly_licences
-from jointfmu_fmu_src.templates import load_template
+from jointfmu_fmu_src.templates import load_jinja_template
 
 from jointfmu.contact.roughness import RQ_OVER_RA
 from jointfmu.files.writing import write_text
-from jointfmu.parameters import ORIGIN_ALIASES, ORIGINS, RELATIVE_HEIGHT_TOLERANCE
+from jointfmu.parameters import ORIGIN_ALIASES, RELATIVE_HEIGHT_TOLERANCE, VALUE_ORIGINS
 from jointfmu.quantity import units
 from jointfmu.version import __version__
 
@@ -38,13 +38,13 @@ _COLUMN_UNITS = {
 """{SI unit: units that columns of an opened file may have}."""
 
 
-def write_laboratory(path: Path) -> None:
+def write_laboratory(page_path: Path) -> None:
     """Write the laboratory as a self-contained page; an existing file is replaced atomically.
 
     Raises ValueError if it cannot be written, ImportError if ziglang is missing, RuntimeError if the
     compiler fails.
     """
-    write_text(path, render_page())
+    write_text(page_path, render_page())
 
 
 def render_page() -> str:
@@ -56,16 +56,16 @@ def render_page() -> str:
         "modules": [
             describe_module(module) | {"size": n} for module, n in zip(page_modules, sizes, strict=True)
         ],
-        "origins": [*ORIGINS, *ORIGIN_ALIASES],
+        "origins": [*VALUE_ORIGINS, *ORIGIN_ALIASES],
         "roughness": {"factor": RQ_OVER_RA, "close": RELATIVE_HEIGHT_TOLERANCE},
         "units": {base: units.unit_sizes(base, *others) for base, others in _COLUMN_UNITS.items()},
     }
     text = json.dumps(document, ensure_ascii=False, allow_nan=False, separators=(",", ":")).encode()
     content = gzip.compress(b"".join([struct.pack("<I", len(text)), text, *binaries]), 9, mtime=0)
-    return load_template(_WEB_FOLDER / "page.html").render(
+    return load_jinja_template(_WEB_FOLDER / "page.html").render(
         version=__version__,
-        style=chart.read_style() + read_web_file("style.css"),
-        script=chart.read_script() + "\n".join(read_web_file(f"{name}.js") for name in _SCRIPT_NAMES),
+        style=chart.read_chart_style() + read_web_file("style.css"),
+        script=chart.read_chart_script() + "\n".join(read_web_file(f"{name}.js") for name in _SCRIPT_NAMES),
         content=b64encode(content).decode(),
         licences=read_webassembly_licences(),
     )

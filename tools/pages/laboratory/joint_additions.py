@@ -12,14 +12,14 @@ from jointfmu_fmu_src.joint_parts import RampPanel
 
 
 class PublishedQuantity(NamedTuple):
-    """Output and variables of an FMU that correspond to a published quantity.
+    """Output and inputs or parameters of an FMU that correspond to a published quantity and its arguments.
 
-    output    : output with the published quantity
-    arguments : {argument of the published quantity: variable of the FMU}
+    output_name          : output that equals the published quantity
+    variable_by_argument : {argument of the published quantity: input or parameter of the FMU}
     """
 
-    output: str
-    arguments: Mapping[str, str]
+    output_name: str
+    variable_by_argument: Mapping[str, str]
 
 
 class MeasuredCurve(NamedTuple):
@@ -27,7 +27,7 @@ class MeasuredCurve(NamedTuple):
 
     label, source      : name of the curve, source of the data
     abscissa, ordinate : variables of the panel
-    x, y               : values (n) in SI units; y is per unit of the parameter `scale_parameter`
+    x, y               : values (n) in SI units; the page multiplies y by the parameter `scale_parameter`
     """
 
     label: str
@@ -40,20 +40,20 @@ class MeasuredCurve(NamedTuple):
 
 
 class ContactMap(NamedTuple):
-    """Map of a quantity over the contact on the laboratory page.
+    """Map of a quantity (pressure) over the contact area, drawn on the laboratory page.
 
-    The C function `lab_map` in the file `map.c` of the joint computes it.
+    The C function `lab_map` in the file `map.c` of the joint computes the quantity.
 
-    unit, display_unit : SI unit, unit on the page
-    compute_marks      : parameter set -> positions (n, 2) [m] of marks (such as bolts), and their meaning;
-                         may be empty
+    si_unit, display_unit  : units of the quantity: in the C function, on the page
+    compute_mark_positions : parameter set -> positions (n, 2) [m] of n marks (such as bolts), may be empty;
+                             and text on what the marks are
     """
 
-    name: str
-    unit: str
+    quantity_name: str
+    si_unit: str
     display_unit: str
-    doc: str
-    compute_marks: Callable[[Any], tuple[Sequence[Sequence[float]], str]]
+    meaning: str
+    compute_mark_positions: Callable[[Any], tuple[Sequence[Sequence[float]], str]]
 
 
 class TransmissionView(NamedTuple):
@@ -90,21 +90,21 @@ class ExampleValues(NamedTuple):
 class LaboratoryModel:
     """Additions of a joint to the laboratory page of one of its models.
 
-    panels           : curves in addition to the curves of the FMU's documentation
-    slider_spans     : {variable: (lower, upper end of its slider [SI])}, in place of the computed ends
-    path_inputs      : inputs that the user varies with the pointer; empty: the input of the ramp
-    published_points : {quantity of a reference file: its output and arguments in the FMU}
-    measured_curves  : measured curves of other joints
-    contact_map      : map of a quantity over the contact
-    transmission     : animation of two shafts
-    example          : values that a button sets
+    additional_panels : curves in addition to the curves of the FMU's documentation
+    slider_spans      : {variable: (lower, upper end of its slider [SI])}, in place of the computed ends
+    pointer_inputs    : inputs that the user varies with the pointer; empty: the input of the ramp
+    published_points  : {quantity of a reference file: its output and arguments in the FMU}
+    measured_curves   : measured curves of other joints
+    contact_map       : map of a quantity over the contact
+    transmission_view : animation of two shafts
+    example_values    : values that a button sets
     """
 
-    panels: Sequence[RampPanel] = ()
+    additional_panels: Sequence[RampPanel] = ()
     slider_spans: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    path_inputs: Sequence[str] = ()
+    pointer_inputs: Sequence[str] = ()
     published_points: Mapping[str, PublishedQuantity] = field(default_factory=dict)
     measured_curves: Sequence[MeasuredCurve] = ()
     contact_map: ContactMap | None = None
-    transmission: TransmissionView | None = None
-    example: ExampleValues | None = None
+    transmission_view: TransmissionView | None = None
+    example_values: ExampleValues | None = None

@@ -8,21 +8,21 @@ from jointfmu_fmu_src.joint_parts import chart
 from jointfmu_fmu_src.joint_parts.chart import Panel, Series
 
 from ...common.plots import BLUE, GREEN, GREY, RED
-from ...studies.published.reference import ROLES, UNTESTED_ROLES, PublishedPoint
+from ...studies.published.reference import POINT_ROLES, UNTESTED_ROLES, PublishedPoint
 from ..laboratory.assemble import read_web_file
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Canvas
 
 
-def style_sheet() -> str:
+def read_style_sheet() -> str:
     """Style sheet (CSS) of the reports."""
-    return chart.read_style() + read_web_file("style.css") + _read_asset("report.css")
+    return chart.read_chart_style() + read_web_file("style.css") + _read_asset("report.css")
 
 
-def page_script(*names: str) -> str:
+def read_page_script(*names: str) -> str:
     """JavaScript of the charts of a report, and of the named scripts of this folder."""
-    return chart.read_script("figures") + "".join(map(_read_asset, names))
+    return chart.read_chart_script("figures") + "".join(map(_read_asset, names))
 
 
 def _read_asset(file_name: str) -> str:
@@ -36,19 +36,21 @@ source; no parameter was set from it, so the joint predicts it."""
 
 
 class ComparisonRow(NamedTuple):
-    """Comparison of a published number with the number that the joint has.
+    """Comparison of a published number with the number that the joint computes or has as parameter.
 
-    unit                : SI unit of both numbers
-    published, computed : the numbers
-    is_upper_limit      : whether the published number is an upper limit
-    role                : ROLE_PARAMETER_SOURCE, ROLE_INDEPENDENT or ROLE_PREDICTED
+    si_unit                         : SI unit of both numbers
+    published_value, computed_value : the numbers
+    is_upper_limit                  : whether the published number is an upper limit
+    role                            : use of the published number: source of a parameter
+        (ROLE_PARAMETER_SOURCE), other source of the parameter (ROLE_INDEPENDENT), test of a prediction
+        (ROLE_PREDICTED)
     """
 
-    name: str
-    unit: str
-    published: float
+    quantity_name: str
+    si_unit: str
+    published_value: float
     is_upper_limit: bool
-    computed: float
+    computed_value: float
     role: str
     source: str
 
@@ -62,49 +64,53 @@ _SERIES_COLOURS = (BLUE, RED, GREEN, GREY, "#8055a8", "#b8860b")
 class Figure(NamedTuple):
     """Figure of a report: charts, table and text.
 
-    title, text : heading, and description of what the figure shows
-    panels      : charts
-    pictures    : SVG elements
-    data_file   : name of the CSV file next to the page
-    table       : rows of a table; the first row has the headings
+    title, description : heading, and description of what the figure shows
+    plot_panels        : charts
+    svg_pictures       : SVG elements
+    data_file          : name of the CSV file next to the page
+    table_rows         : rows of a table; the first row has the headings
     """
 
     title: str
-    text: str
-    panels: Sequence[Panel] = ()
-    pictures: Sequence[str] = ()
+    description: str
+    plot_panels: Sequence[Panel] = ()
+    svg_pictures: Sequence[str] = ()
     data_file: str | None = None
-    table: Sequence[Sequence[str]] = ()
+    table_rows: Sequence[Sequence[str]] = ()
 
 
-def published_series(published_points: Sequence[PublishedPoint], argument: str) -> list[Series]:
-    """Series of published numbers over an argument, one for each role.
+def published_series(published_points: Sequence[PublishedPoint], abscissa_name: str) -> list[Series]:
+    """Chart series of published numbers against an argument, one for each use (role) of the numbers.
 
-    Marks are empty if numbers of this role are no independent check.
+    Marks are empty if the numbers are no independent check, for example if parameters are fitted to them.
     """
     series = []
     for role in dict.fromkeys(point.role for point in published_points):
         chosen = [point for point in published_points if point.role == role]
-        x, y = [p.where[argument] for p in chosen], [float(p.value) for p in chosen]
+        x, y = [p.where[abscissa_name] for p in chosen], [float(p.value) for p in chosen]
         marks = "empty" if role in UNTESTED_ROLES else "full"
-        series.append(Series(f"published: {ROLES[role]}", x, y, marks, titles=[p.id for p in chosen]))
+        series.append(
+            Series(f"published: {POINT_ROLES[role]}", x, y, marks, marker_tooltips=[p.id for p in chosen])
+        )
     return series
 
 
-def draw_panels(matplotlib_figure: "Canvas", panels: Sequence[Panel]) -> None:
+def draw_panels(matplotlib_figure: "Canvas", plot_panels: Sequence[Panel]) -> None:
     """Draw panels side by side with matplotlib."""
-    for axes, panel in zip(matplotlib_figure.subplots(1, len(panels), squeeze=False)[0], panels, strict=True):
-        for series, color in zip(panel.series, _SERIES_COLOURS, strict=False):
-            style = {"ls": "", "marker": "o", "mfc": "white" if series.marks == "empty" else color}
+    for axes, panel in zip(
+        matplotlib_figure.subplots(1, len(plot_panels), squeeze=False)[0], plot_panels, strict=True
+    ):
+        for series, color in zip(panel.chart_series, _SERIES_COLOURS, strict=False):
+            style = {"ls": "", "marker": "o", "mfc": "white" if series.marker_style == "empty" else color}
             axes.plot(
-                series.x,
-                series.y,
+                series.x_values,
+                series.y_values,
                 color=color,
-                label=series.name,
-                **style if series.marks else {"ls": "--" if series.dashed else "-"},
+                label=series.series_name,
+                **style if series.marker_style else {"ls": "--" if series.is_dashed else "-"},
             )
-        axes.set_title(panel.title, fontsize=10)
-        axes.set_xlabel(panel.x)
-        axes.set_ylabel(panel.y)
-        if len(panel.series) > 1:
+        axes.set_title(panel.panel_title, fontsize=10)
+        axes.set_xlabel(panel.x_axis_label)
+        axes.set_ylabel(panel.y_axis_label)
+        if len(panel.chart_series) > 1:
             axes.legend(fontsize=8)

@@ -7,15 +7,15 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from jointfmu_fmu_src.folders import find_asset
+from jointfmu_fmu_src.folders import find_page_or_icon
 from jointfmu_fmu_src.joint_parts.chart import encode_panels
-from jointfmu_fmu_src.native.page import draw_further_charts, find_ramp_panels
-from jointfmu_fmu_src.templates import PAGE_FOLDER, law_variables, load_template
+from jointfmu_fmu_src.native.page import draw_further_charts, find_load_ramp_panels
+from jointfmu_fmu_src.templates import PAGE_TEMPLATE_FOLDER, load_jinja_template, make_law_template_variables
 
 from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS
 from jointfmu.joints.model import Model, Variable
-from jointfmu.parameters import ORIGINS, ParameterFile
+from jointfmu.parameters import VALUE_ORIGINS, ParameterFile
 from jointfmu.progress import set_status_text
 from jointfmu.quantity.units import conversion_factor
 from jointfmu.version import __version__
@@ -30,7 +30,7 @@ from ...common.shown import (
     list_parameter_file_entries,
 )
 from ...run.ramps.loops import HysteresisLoops
-from .figure import ComparisonRow, Figure, Panel, Series, page_script, style_sheet
+from .figure import ComparisonRow, Figure, Panel, Series, read_page_script, read_style_sheet
 from .load_history import LoadHistory
 
 _STIFFNESS_UNITS = ("N/m", "N.m/rad")
@@ -40,17 +40,19 @@ _CONSTANT_STIFFNESS_RELATIVE_CHANGE = 0.02
 
 
 def summarise_joint(
-    load_history: LoadHistory, loops: HysteresisLoops | None, parameter_entries: Sequence[ParameterFileEntry]
+    load_history: LoadHistory,
+    hysteresis_loops: HysteresisLoops | None,
+    parameter_entries: Sequence[ParameterFileEntry],
 ) -> str:
     """Summarise a joint in a few sentences: stiffness, hysteresis, estimated parameters.
 
-    loops             : hysteresis loops; None for a joint without friction history
+    hysteresis_loops  : hysteresis loops; None for a joint without friction history
     parameter_entries : entries of the parameter file
     """
     lines = [f"A {KINDS[load_history.file.joint].title}.", _describe_stiffness(load_history)]
-    if loops:
-        lines.append(_describe_energy_loss(loops))
-    count = Counter(entry.origin for entry in parameter_entries)
+    if hysteresis_loops:
+        lines.append(_describe_energy_loss(hysteresis_loops))
+    count = Counter(entry.value_origin for entry in parameter_entries)
     uncertain = [f"{count[kind]} {text}" for kind, text in _ESTIMATED_ORIGINS.items() if count[kind]]
     if uncertain:
         total = sum(count.values())
@@ -64,18 +66,18 @@ _ESTIMATED_ORIGINS = {"estimate": "are estimates", "calibration": "were fitted"}
 """{origin of an uncertain parameter: end of the sentence that names such parameters}."""
 
 
-def _format_value(value: float, unit: str) -> str:
+def _format_value(si_value: float, si_unit: str) -> str:
     """Format a value with three digits in a display unit."""
-    text, display_unit = format_quantity(value, unit, 3)
+    text, display_unit = format_quantity(si_value, si_unit, 3)
     return f"{float(text):.6g} {display_unit}"
 
 
 def _describe_stiffness(load_history: LoadHistory) -> str:
-    """Describe the stiffness over the load ramp in a sentence; empty if no panel has a stiffness."""
+    """Describe in a sentence how the stiffness changes along the load ramp; empty if no panel has one."""
     units = {v.name: v.unit for v in (*load_history.model.inputs, *load_history.model.outputs)}
     curves = [
         (over, name)
-        for over, names in find_ramp_panels(load_history.model)
+        for over, names in find_load_ramp_panels(load_history.model)
         for name in names
         if units[name] in _STIFFNESS_UNITS
     ]
@@ -98,12 +100,15 @@ def _describe_stiffness(load_history: LoadHistory) -> str:
     )
 
 
-def _describe_energy_loss(loops: HysteresisLoops) -> str:
+def _describe_energy_loss(hysteresis_loops: HysteresisLoops) -> str:
     """Describe the energy loss of the largest loop in a sentence."""
-    row = max(loops.compute_loop_results(), key=lambda row: row["motion"])
+    row = max(hysteresis_loops.compute_quantities_of_loops(), key=lambda row: row["motion"])
     if not row["loss"]:
         return "The joint has no hysteresis: loading and unloading follow the same curve."
-    amplitude = f"{loops.motion_name} = {_format_value(row['motion'], loops.units[0])}"
+    amplitude = (
+        f"{hysteresis_loops.displacement_name} = "
+        f"{_format_value(row['motion'], hysteresis_loops.displacement_and_force_units[0])}"
+    )
     return (
         f"In a cycle between plus and minus {amplitude} the joint dissipates "
         f"{_format_value(row['loss'], 'J')}, "
@@ -122,7 +127,7 @@ ORIGIN_MEANINGS = {
     "default": "not stated, the default of the package",
     "user": "stated by you",
 }
-"""{origin of a number: meaning}, for all parameters.ORIGINS."""
+"""{origin of a number: meaning}, for all parameters.VALUE_ORIGINS."""
 VALIDITY_HEADINGS = {
     "docs/validity.md": ("In short", "What this does not show"),
     "docs/validity_stiffness.md": (
@@ -152,60 +157,68 @@ class _ReportRow(NamedTuple):
     source: str
 
 
-def write_joint_report(path: Path, parameter_file: ParameterFile, fmu: str | None = None) -> None:
+def write_joint_report(page_path: Path, parameter_file: ParameterFile, fmu_name: str | None = None) -> None:
     """Write the self-contained page of a parameter file for one of the joint's FMUs; default: the first.
 
     Raises ValueError if the joint has no such FMU, or the file cannot be written.
     """
-    write_text(path, _render_page(KINDS[parameter_file.joint].find_model(fmu), parameter_file))
+    write_text(page_path, _render_page(KINDS[parameter_file.joint].find_model(fmu_name), parameter_file))
 
 
-def _render_page(model: Model, parameter_file: ParameterFile) -> str:
+def _render_page(fmu_model: Model, parameter_file: ParameterFile) -> str:
     """Render the report page of one joint as HTML text."""
     set_status_text("curves over the load")
-    course = LoadHistory(model, parameter_file)
-    folder, rows = Path(__file__).parent, _report_rows(parameter_file)
-    module = load_tool_module(KINDS[model.joint], "report")
+    course = LoadHistory(fmu_model, parameter_file)
+    folder, rows = Path(__file__).parent, _make_parameter_table_rows(parameter_file)
+    module = load_tool_module(KINDS[fmu_model.joint], "report")
     set_status_text("loops")
-    loops = course.compute_loops() if model.load_cycle else None
-    figures = [ramp_figure(course)]
+    loops = course.compute_loops() if fmu_model.load_cycle else None
+    figures = [make_ramp_figure(course)]
     if loops and any(loop.energy_loss for loop in loops.loops):
-        figures.append(loop_figure(course, loops))
-    if module and model.name in module.REPORT_FIGURES:
-        figures += module.REPORT_FIGURES[model.name](course)
+        figures.append(make_loop_figure(course, loops))
+    if module and fmu_model.name in module.REPORT_FIGURES:
+        figures += module.REPORT_FIGURES[fmu_model.name](course)
     compared = (
-        module.CATALOGUE_COMPARISONS[model.name](model, parameter_file)
-        if module and model.name in module.CATALOGUE_COMPARISONS
+        module.CATALOGUE_COMPARISONS[fmu_model.name](fmu_model, parameter_file)
+        if module and fmu_model.name in module.CATALOGUE_COMPARISONS
         else []
     )
-    return load_template(find_asset(model, "page.html"), folder, PAGE_FOLDER).render(
+    return load_jinja_template(
+        find_page_or_icon(fmu_model, "page.html"), folder, PAGE_TEMPLATE_FOLDER
+    ).render(
         model=course.model,
-        spring=course.spring,
+        spring=course.tabulated_joint,
         fmu=True,
-        **law_variables(parameter_file),
+        **make_law_template_variables(parameter_file),
         file=parameter_file,
         version=__version__,
-        figures=[(figure, encode_panels(figure.panels)) for figure in figures],
+        figures=[(figure, encode_panels(figure.plot_panels)) for figure in figures],
         opening=summarise_joint(course, loops, list_parameter_file_entries(parameter_file)),
-        beside=_comparison_rows(compared),
-        drawings=draw_further_charts(course.model, course.spring),
+        beside=_make_comparison_table_rows(compared),
+        drawings=draw_further_charts(course.model, course.tabulated_joint),
         rows=rows,
         origins=[
-            (kind, ORIGIN_MEANINGS[kind], [r.name for r in rows if r.origin == kind]) for kind in ORIGINS
+            (kind, ORIGIN_MEANINGS[kind], [r.name for r in rows if r.origin == kind])
+            for kind in VALUE_ORIGINS
         ],
         judgement=judge_joint_stiffness(parameter_file),
         range=_describe_range(course),
         topics=VALIDITY_HEADINGS,
-        style=style_sheet(),
-        script=page_script() + "drawAll();",
+        style=read_style_sheet(),
+        script=read_page_script() + "drawAll();",
     )
 
 
-def _report_rows(parameter_file: ParameterFile) -> list[_ReportRow]:
+def _make_parameter_table_rows(parameter_file: ParameterFile) -> list[_ReportRow]:
     """Rows of the report's table for all entries of the parameter file."""
     return [
         _ReportRow(
-            e.name, *format_quantity(e.value, e.unit), _format_si_value(e), e.meaning, e.origin, e.source
+            e.entry_name,
+            *format_quantity(e.entry_value, e.si_unit),
+            _format_si_value(e),
+            e.entry_meaning,
+            e.value_origin,
+            e.value_source,
         )
         for e in list_parameter_file_entries(parameter_file)
     ]
@@ -216,47 +229,50 @@ def _format_si_value(parameter_entry: ParameterFileEntry) -> str:
 
     Empty if the display unit is the SI unit, or if there is no unit.
     """
-    if parameter_entry.unit is None or isinstance(parameter_entry.value, bool | str | tuple):
+    if parameter_entry.si_unit is None or isinstance(parameter_entry.entry_value, bool | str | tuple):
         return ""
     return (
         ""
-        if choose_display_unit(parameter_entry.unit, parameter_entry.value) == parameter_entry.unit
-        else f"{parameter_entry.value:.12g} {format_unit(parameter_entry.unit)}"
+        if choose_display_unit(parameter_entry.si_unit, parameter_entry.entry_value)
+        == parameter_entry.si_unit
+        else f"{parameter_entry.entry_value:.12g} {format_unit(parameter_entry.si_unit)}"
     )
 
 
-def _to_display_unit(values: Any, unit: str) -> tuple[Any, str]:
+def _to_display_unit(si_values: Any, si_unit: str) -> tuple[Any, str]:
     """Convert values to a display unit that suits the largest of them; returns the values and the unit."""
-    largest = float(np.max(np.abs(values), initial=0.0))
-    display_unit = choose_display_unit(unit, largest)
-    return conversion_factor(unit, display_unit) * np.asarray(values), format_unit(display_unit)
+    largest = float(np.max(np.abs(si_values), initial=0.0))
+    display_unit = choose_display_unit(si_unit, largest)
+    return conversion_factor(si_unit, display_unit) * np.asarray(si_values), format_unit(display_unit)
 
 
-def _title_in_words(output_names: Sequence[str], over: str, variables: Mapping[str, Variable]) -> str:
+def _format_panel_title(
+    output_names: Sequence[str], abscissa_name: str, variable_by_name: Mapping[str, Variable]
+) -> str:
     """Title of a panel by the meanings of its variables: "Normal stiffness over preload of each bolt"."""
 
-    def meaning(variable_name: str) -> str:
-        """Meaning of a variable as the beginning of a title."""
-        return re.split(r"[,;:(]| -?d\w+/d", variables[variable_name].doc)[0].strip()
+    def find_short_meaning(variable_name: str) -> str:
+        """First words of the description of a variable, up to a comma, bracket or symbol, for a title."""
+        return re.split(r"[,;:(]| -?d\w+/d", variable_by_name[variable_name].doc)[0].strip()
 
-    quantities = ", ".join(dict.fromkeys(map(meaning, output_names)))
-    return f"{quantities[0].upper()}{quantities[1:]} over {meaning(over)}"
+    quantities = ", ".join(dict.fromkeys(map(find_short_meaning, output_names)))
+    return f"{quantities[0].upper()}{quantities[1:]} over {find_short_meaning(abscissa_name)}"
 
 
-def ramp_figure(load_history: LoadHistory) -> Figure:
-    """Figure of the curves over the load ramp, with the panels that the joint defines for its page."""
+def make_ramp_figure(load_history: LoadHistory) -> Figure:
+    """Figure of the outputs along the load ramp, with the charts that the joint defines for its page."""
     columns = load_history.compute_ramp()
     variables = {v.name: v for v in (*load_history.model.inputs, *load_history.model.outputs)}
     charts, docs = [], dict[str, str]()
     unknown = getattr(load_history.file.values, "unknown_outputs", ())
-    for over, output_names in find_ramp_panels(load_history.model):
+    for over, output_names in find_load_ramp_panels(load_history.model):
         drawn = [name for name in output_names if name not in unknown]
         names = [name for name in drawn if np.any(columns[name])] or drawn  # not C_zz = 0
         x, x_unit = _to_display_unit(columns[over], variables[over].unit)
         unit = choose_display_unit(variables[names[0]].unit, float(np.max(np.abs(columns[names[0]]))))
         scale = conversion_factor(variables[names[0]].unit, unit)
         series = [Series(name, x, scale * columns[name]) for name in names]
-        title = _title_in_words(names, over, variables)
+        title = _format_panel_title(names, over, variables)
         charts.append(Panel(title, f"{over} [{x_unit}]", f"{', '.join(names)} [{unit}]", series))
         docs |= {name: variables[name].doc for name in (over, *names)}
     ramped = variables[load_history.model.ramp.input_name]
@@ -269,21 +285,25 @@ def ramp_figure(load_history: LoadHistory) -> Figure:
     return Figure("Curves over the load", text, charts)
 
 
-def loop_figure(load_history: LoadHistory, loops: HysteresisLoops) -> Figure:
+def make_loop_figure(load_history: LoadHistory, hysteresis_loops: HysteresisLoops) -> Figure:
     """Figure of the hysteresis loops, with a table of their losses."""
-    units = loops.units
+    units = hysteresis_loops.displacement_and_force_units
     x_unit, y_unit = (
         choose_display_unit(unit, max(float(np.max(np.abs(values))) for values in series))
         for unit, series in zip(
-            units, ([p.motion for p in loops.loops], [p.force for p in loops.loops]), strict=True
+            units,
+            ([p.displacements for p in hysteresis_loops.loops], [p.forces for p in hysteresis_loops.loops]),
+            strict=True,
         )
     )
     x, y = conversion_factor(units[0], x_unit), conversion_factor(units[1], y_unit)
     series = [
         Series(
-            f"amplitude {x * loop.amplitudes[0]:.4g} {format_unit(x_unit)}", x * loop.motion, y * loop.force
+            f"amplitude {x * loop.displacement_and_force_amplitude[0]:.4g} {format_unit(x_unit)}",
+            x * loop.displacements,
+            y * loop.forces,
         )
-        for loop in reversed(loops.loops)
+        for loop in reversed(hysteresis_loops.loops)
     ]
     inputs = {v.name: v.unit for v in load_history.model.inputs}
     settings = [
@@ -294,43 +314,43 @@ def loop_figure(load_history: LoadHistory, loops: HysteresisLoops) -> Figure:
     text = "Quasi-static load cycles, each amplitude from rest with two cycles" + (
         f", at {', '.join(settings)}. " if settings else ". "
     )
-    force = f"{'-' if loops.force_sign < 0.0 else ''}{loops.force_name}"
+    force = f"{'-' if hysteresis_loops.force_sign < 0.0 else ''}{hysteresis_loops.force_name}"
     variables = {v.name: v for v in (*load_history.model.inputs, *load_history.model.outputs)}
     panel = Panel(
-        _title_in_words([loops.force_name], loops.motion_name, variables),
-        f"{loops.motion_name} [{x_unit}]",
+        _format_panel_title([hysteresis_loops.force_name], hysteresis_loops.displacement_name, variables),
+        f"{hysteresis_loops.displacement_name} [{x_unit}]",
         f"{force} [{y_unit}]",
         series,
     )
-    return Figure("Loops", text, [panel], table=_loop_rows(loops))
+    return Figure("Loops", text, [panel], table_rows=_make_loop_table_rows(hysteresis_loops))
 
 
-def _loop_rows(loops: HysteresisLoops) -> list[tuple[str, ...]]:
+def _make_loop_table_rows(hysteresis_loops: HysteresisLoops) -> list[tuple[str, ...]]:
     """Rows of the table of hysteresis loops: amplitude, force, stiffness, energy loss, loss factor."""
-    units = loops.result_units
+    units = hysteresis_loops.loop_quantity_units
 
-    def format_cell(row: dict[str, float], name: str) -> str:
+    def format_cell(loop_result: dict[str, float], quantity_name: str) -> str:
         """Format one number of a loop in its display unit."""
-        value, unit = _to_display_unit(row[name], units[name])
+        value, unit = _to_display_unit(loop_result[quantity_name], units[quantity_name])
         return f"{float(value):.4g} {unit}"
 
     rows: list[tuple[str, ...]] = [
         ("amplitude", "force or torque", "secant stiffness", "energy loss per cycle", "loss factor")
     ]
-    for row in loops.compute_loop_results():
+    for row in hysteresis_loops.compute_quantities_of_loops():
         rows.append((*(format_cell(row, name) for name in units), f"{row['loss_factor']:.3g}"))
     return rows
 
 
-def _comparison_rows(rows: list[ComparisonRow]) -> list[dict[str, str]]:
+def _make_comparison_table_rows(comparison_rows: list[ComparisonRow]) -> list[dict[str, str]]:
     """Template rows that compare published with computed numbers of a joint, in display units."""
     cells = []
-    for row in rows:
-        unit = choose_display_unit(row.unit, row.published)
-        scale, ending = conversion_factor(row.unit, unit), f" {format_unit(unit)}".rstrip()
-        numbers = (f"{scale * value:.4g}{ending}" for value in (row.published, row.computed))
+    for row in comparison_rows:
+        unit = choose_display_unit(row.si_unit, row.published_value)
+        scale, ending = conversion_factor(row.si_unit, unit), f" {format_unit(unit)}".rstrip()
+        numbers = (f"{scale * value:.4g}{ending}" for value in (row.published_value, row.computed_value))
         names = ("name", "published", "computed", "role", "source")
-        texts = (row.name.replace("_", " "), *numbers, row.role, row.source)
+        texts = (row.quantity_name.replace("_", " "), *numbers, row.role, row.source)
         cells.append(dict(zip(names, texts, strict=True)) | {"limit": "< " if row.is_upper_limit else ""})
     return cells
 

@@ -7,14 +7,14 @@ from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
 from ...run.engine import open_joint
-from ...run.ramps.loops import CyclicPath, HysteresisLoops, find_conjugate_output, loops_from_results
+from ...run.ramps.loops import CyclicInputPath, HysteresisLoops, find_conjugate_output, loops_from_results
 from ...run.ramps.ramp import RampResult
 
-_RAMP_POINTS = 101
+_RAMP_POINT_COUNT = 101
 """Number of points of the load ramp [1]."""
-_LOAD_CYCLE = CyclicPath(points=80)
+_LOAD_CYCLE = CyclicInputPath(points_per_cycle=80)
 """Load cycle: points per cycle, shape, number of cycles."""
-AMPLITUDES_OVER_LARGEST = (0.25, 0.5, 1.0)
+LOOP_AMPLITUDES_OVER_LARGEST_AMPLITUDE = (0.25, 0.5, 1.0)
 """Amplitudes of the load cycles over the largest amplitude [1]."""
 _MAX_LOAD_DOUBLINGS, _LAW_LIMIT_BISECTIONS = 10, 12
 """Doublings of the load in the search for the end of the law, and bisections to locate it."""
@@ -25,18 +25,19 @@ _SLIPPING_OVER_GROSS_SLIP_FORCE = 0.95
 class LoadHistory:
     """Load ramp and load cycles of a joint. All other inputs have the start values of the file.
 
-    file, spring : parameter file, tabulated curves of the joint
-    model        : model of the FMU, with ramp and load cycle for this file
-    start_values : {input: start value}
-    law_limit    : (value of the ramped input, warning) at the end of the law's range; None if there is no end
-                   near the ramp
+    file            : parameter file
+    tabulated_joint : tabulated curves of the joint
+    model           : model of the FMU, with ramp and load cycle for this file
+    start_values    : {input: start value}
+    law_limit       : (value of the ramped input, warning) where the interface law ceases to be valid; None
+                      if this is not near the ramp
     """
 
-    def __init__(self, model: Model, parameter_file: ParameterFile) -> None:
-        self.file, self.spring = parameter_file, model.tabulate(parameter_file.values)
-        self.start_values = {v.name: parameter_file.start_value(v.name) for v in model.inputs}
-        self.model = model.with_parameters(parameter_file.joint, parameter_file.values).with_load_range(
-            self.spring, self.start_values
+    def __init__(self, fmu_model: Model, parameter_file: ParameterFile) -> None:
+        self.file, self.tabulated_joint = parameter_file, fmu_model.tabulate(parameter_file.values)
+        self.start_values = {v.name: parameter_file.start_value(v.name) for v in fmu_model.inputs}
+        self.model = fmu_model.with_parameters(parameter_file.joint, parameter_file.values).with_load_range(
+            self.tabulated_joint, self.start_values
         )
         self._engine = open_joint(self.model, parameter_file)
         self.law_limit = self._find_law_limit()
@@ -44,8 +45,8 @@ class LoadHistory:
     def compute_ramp(self) -> dict[str, Array]:
         """Compute inputs and outputs (n) along the load ramp; points are dense where curves bend."""
         ramp = self.model.ramp
-        points = {ramp.input_name: ramp.sample_inputs(_RAMP_POINTS)}
-        return self._engine.follow(points, each_from_rest=True).columns
+        points = {ramp.input_name: ramp.sample_inputs(_RAMP_POINT_COUNT)}
+        return self._engine.evaluate_path(points, restart_at_each_point=True).variable_columns
 
     @property
     def loop_inputs(self) -> dict[str, float]:
@@ -60,11 +61,15 @@ class LoadHistory:
         assert loop
         outputs = {v.name: v.unit for v in self.model.outputs}
         output = find_conjugate_output(driven, outputs, loop.input_name, None, self.model.name)
-        swing = CyclicPath(centre=self.loop_inputs[loop.input_name], points=_LOAD_CYCLE.points)
+        swing = CyclicInputPath(
+            centre_value=self.loop_inputs[loop.input_name], points_per_cycle=_LOAD_CYCLE.points_per_cycle
+        )
         largest = self._largest_amplitude(output)
         results = [
-            self._compute_along_path(loop.input_name, swing.input_values(a * largest), driven | outputs)
-            for a in AMPLITUDES_OVER_LARGEST
+            self._compute_along_path(
+                loop.input_name, swing.compute_input_values(a * largest), driven | outputs
+            )
+            for a in LOOP_AMPLITUDES_OVER_LARGEST_AMPLITUDE
         ]
         return loops_from_results(results, loop.input_name, output, swing)
 
@@ -75,13 +80,15 @@ class LoadHistory:
         """
         loop = self.model.load_cycle
         assert loop
-        largest = loop.amplitude
+        largest = loop.input_amplitude
 
         def force_range(amplitude: float) -> float:
             """Largest minus smallest force [unit of the output] in a load cycle with an amplitude."""
             points = self.loop_inputs[loop.input_name] + np.array([0.0, amplitude])
             return float(
-                np.ptp(self._compute_along_path(loop.input_name, points, {}).columns[conjugate_output])
+                np.ptp(
+                    self._compute_along_path(loop.input_name, points, {}).variable_columns[conjugate_output]
+                )
             )
 
         end = force_range(largest)
@@ -97,24 +104,28 @@ class LoadHistory:
             )
         return min(largest, float(f"{2.0 * high:.2g}"))
 
-    def _compute_along_path(self, input_name: str, input_values: Array, units: dict[str, str]) -> RampResult:
+    def _compute_along_path(
+        self, input_name: str, input_values: Array, unit_by_variable: dict[str, str]
+    ) -> RampResult:
         """Compute the outputs along a path of one input, from rest."""
-        columns = self._engine.follow({**self.loop_inputs, input_name: input_values}).columns
+        columns = self._engine.evaluate_path({**self.loop_inputs, input_name: input_values}).variable_columns
         read = (input_name, *(v.name for v in self.model.outputs))
-        return RampResult({key: columns[key] for key in read}, units, ())
+        return RampResult({key: columns[key] for key in read}, unit_by_variable, ())
 
     def _find_law_limit(self) -> tuple[float, str] | None:
-        """Find the end of the law's range: the smallest ramped input with a new warning, and the warning.
+        """Find where the law ceases to be valid: smallest ramped input with a new warning, and the warning.
 
-        New is a warning that is absent at zero. None if none appears up to 2^10 times the end of the ramp.
+        A warning is new if it is absent at zero. None if none appears up to 2^10 times the end of the ramp.
         """
         model = self.model
 
         def list_warnings_at(input_value: float) -> dict[int, str]:
             """Warnings of the model at a value of the ramped input."""
-            columns = self._engine.follow({model.ramp.input_name: input_value}, each_from_rest=True).columns
+            columns = self._engine.evaluate_path(
+                {model.ramp.input_name: input_value}, restart_at_each_point=True
+            ).variable_columns
             return model.find_warnings(
-                self.spring, {name: float(column[0]) for name, column in columns.items()}
+                self.tabulated_joint, {name: float(column[0]) for name, column in columns.items()}
             )
 
         before = list_warnings_at(0.0)

@@ -3,9 +3,9 @@
 import hashlib
 from xml.etree.ElementTree import Element
 
-DEFAULT_ALGORITHM = "SHA3-256"
+DEFAULT_CHECKSUM_ALGORITHM = "SHA3-256"
 """checksumType if a related file states none."""
-ALGORITHMS = {
+CHECKSUM_ALGORITHMS = {
     f"{family}-{bits}": f"{name}{bits}"
     for family, name in (("SHA3", "sha3_"), ("SHA", "sha"))
     for bits in (224, 256, 384, 512)
@@ -13,17 +13,17 @@ ALGORITHMS = {
 """{checksumType: name of the algorithm in hashlib}."""
 
 
-def check_checksum(file_element: Element, content: bytes) -> None:
-    """Compare the content of a related file with its checksum in the manifest, if one is stated.
+def check_checksum(related_file_element: Element, file_content: bytes) -> None:
+    """Compare the content of a file in an FMU with its checksum in the manifest, if one is stated.
 
-    file_element : element of the manifest
+    related_file_element : element of the manifest (FMI-LS-REF) for the file
 
-    Raises ValueError if the checksums differ, or the algorithm is not in ALGORITHMS.
+    Raises ValueError if the checksums differ, or the algorithm is not in CHECKSUM_ALGORITHMS.
     """
-    if (stated := file_element.get("checksum")) is None:
+    if (stated := related_file_element.get("checksum")) is None:
         return
-    kind = file_element.get("checksumType", DEFAULT_ALGORITHM)
-    if kind not in ALGORITHMS:
-        raise ValueError(f"has checksumType = {kind!r}, allowed are {', '.join(ALGORITHMS)}")
-    if (found := hashlib.new(ALGORITHMS[kind], content).hexdigest()) != stated.strip().lower():
+    kind = related_file_element.get("checksumType", DEFAULT_CHECKSUM_ALGORITHM)
+    if kind not in CHECKSUM_ALGORITHMS:
+        raise ValueError(f"has checksumType = {kind!r}, allowed are {', '.join(CHECKSUM_ALGORITHMS)}")
+    if (found := hashlib.new(CHECKSUM_ALGORITHMS[kind], file_content).hexdigest()) != stated.strip().lower():
         raise ValueError(f"is not the file of the manifest: its {kind} is {found}, stated is {stated}")

@@ -14,44 +14,49 @@ from . import exchange
 from .task import ExecuteFunction, ExperimentTask, OutputRows, make_output_reader
 
 
-def run_fmpy(experiment_task: ExperimentTask, messages: list[str]) -> OutputRows:
+def run_fmpy(experiment_task: ExperimentTask, fmu_messages: list[str]) -> OutputRows:
     """Execute an experiment for co-simulation in fmpy (FMI 2.0 and 3.0).
 
-    messages : list to which the warnings and errors of the FMU are appended
+    Returns the outputs at all communication points.
+
+    fmu_messages : list to which the warnings and errors of the FMU are appended
     """
     with open_instance(
-        experiment_task.folder, read_description(experiment_task.fmu), experiment_task.fmu, messages
+        experiment_task.fmu_folder,
+        read_description(experiment_task.fmu_path),
+        experiment_task.fmu_path,
+        fmu_messages,
     ) as slave:
-        slave.enter_initialization(experiment_task.times[0])
-        slave.set_values({**experiment_task.settings, **experiment_task.inputs_at(0)})
+        slave.enter_initialization(experiment_task.communication_points[0])
+        slave.set_values({**experiment_task.start_values, **experiment_task.inputs_at(0)})
         slave.fmu.exitInitializationMode()
-        read = make_output_reader(slave, experiment_task.outputs)
+        read = make_output_reader(slave, experiment_task.output_names)
         rows: OutputRows = [read()]
-        for i, time in enumerate(experiment_task.times[:-1]):
+        for i, time in enumerate(experiment_task.communication_points[:-1]):
             slave.set_values(experiment_task.inputs_at(i))
-            slave.do_step(time, experiment_task.times[i + 1] - time)
+            slave.do_step(time, experiment_task.communication_points[i + 1] - time)
             rows.append(read())
     return rows
 
 
-def read_start_values(experiment_task: ExperimentTask, messages: list[str]) -> list[list[Any]]:
-    """Read the start values of the variables `experiment_task.outputs`, of any type, in fmpy: one row."""
-    exchanged = experiment_task.interface == MODEL_EXCHANGE
+def read_start_values(experiment_task: ExperimentTask, fmu_messages: list[str]) -> list[list[Any]]:
+    """Read the start values of the variables `experiment_task.output_names` in fmpy: one row."""
+    exchanged = experiment_task.fmi_interface == MODEL_EXCHANGE
     with open_instance(
-        experiment_task.folder,
-        read_description(experiment_task.fmu),
-        experiment_task.fmu,
-        messages,
+        experiment_task.fmu_folder,
+        read_description(experiment_task.fmu_path),
+        experiment_task.fmu_path,
+        fmu_messages,
         exchanged,
     ) as slave:
         slave.enter_initialization()
-        return [[slave.get_value(name) for name in experiment_task.outputs]]
+        return [[slave.get_value(name) for name in experiment_task.output_names]]
 
 
-def run_ecos(experiment_task: ExperimentTask, messages: list[str]) -> OutputRows:
+def run_ecos(experiment_task: ExperimentTask, fmu_messages: list[str]) -> OutputRows:
     """Execute an experiment for co-simulation in ecos (FMI 2.0 and 3.0).
 
-    Errors of the FMU appear only in the log of ecos, see `worker`.
+    Returns the outputs at all communication points. Errors of the FMU appear only in the log of ecos.
     """
     from ecospy import EcosLib, EcosSimulation, EcosSimulationStructure
     from ecospy.EcosParameterSet import EcosParameterSet
@@ -60,8 +65,8 @@ def run_ecos(experiment_task: ExperimentTask, messages: list[str]) -> OutputRows
     _check_variable_types(experiment_task)
     EcosLib.set_log_level("debug")
     structure, start = EcosSimulationStructure(), EcosParameterSet()
-    structure.add_model("fmu", experiment_task.fmu)
-    for name, value in {**experiment_task.settings, **experiment_task.inputs_at(0)}.items():
+    structure.add_model("fmu", experiment_task.fmu_path)
+    for name, value in {**experiment_task.start_values, **experiment_task.inputs_at(0)}.items():
         add = {bool: start.add_bool, int: start.add_int, str: start.add_string}.get(
             type(value), start.add_real
         )
@@ -71,16 +76,16 @@ def run_ecos(experiment_task: ExperimentTask, messages: list[str]) -> OutputRows
         suffixes = {"real": "real", "integer": "integer", "boolean": "bool"}
         setters = {
             name: getattr(simulation, f"set_{suffixes[experiment_task.variable_kinds[name]]}")
-            for name in experiment_task.inputs
+            for name in experiment_task.input_values
         }
         getters = {
             name: getattr(simulation, f"get_{suffixes[experiment_task.variable_kinds[name]]}")
-            for name in experiment_task.outputs
+            for name in experiment_task.output_names
         }
         if not simulation.init(parameter_set="start"):
             raise RuntimeError(EcosLib.get_last_error())
         rows: OutputRows = [[float(get(f"fmu::{name}")) for name, get in getters.items()]]
-        for i in range(len(experiment_task.times) - 1):
+        for i in range(len(experiment_task.communication_points) - 1):
             for name, value in experiment_task.inputs_at(i).items():
                 setters[name](f"fmu::{name}", value)
             simulation.step(1)
@@ -89,11 +94,11 @@ def run_ecos(experiment_task: ExperimentTask, messages: list[str]) -> OutputRows
     return rows
 
 
-def run_libcosim(experiment_task: ExperimentTask, messages: list[str]) -> OutputRows:
+def run_libcosim(experiment_task: ExperimentTask, fmu_messages: list[str]) -> OutputRows:
     """Execute an experiment for co-simulation in libcosim (FMI 2.0).
 
-    libcosim gives no outputs before the first step: the first row is None. Its step size is a whole number of
-    nanoseconds.
+    Returns the outputs at all communication points; the first row is None, as libcosim gives no outputs
+    before the first step. Its step size is a whole number of nanoseconds.
     """
     from libcosimpy._internal import get_last_error_message
     from libcosimpy.CosimExecution import CosimExecution
@@ -104,20 +109,20 @@ def run_libcosim(experiment_task: ExperimentTask, messages: list[str]) -> Output
     _check_variable_types(experiment_task)
     nanoseconds = round(experiment_task.step_size * 1e9)
     if nanoseconds < 1 or abs(nanoseconds - experiment_task.step_size * 1e9) > 1e-3:
-        raise ValueError(f"has a step of {experiment_task.step_size!r} s, libcosim takes whole nanoseconds")
+        raise ValueError(f"its step is {experiment_task.step_size!r} s, libcosim takes whole nanoseconds")
     execution = CosimExecution.from_step_size(step_size=nanoseconds)
-    slave = execution.add_local_slave(CosimLocalSlave(fmu_path=experiment_task.fmu, instance_name="fmu"))
+    slave = execution.add_local_slave(CosimLocalSlave(fmu_path=experiment_task.fmu_path, instance_name="fmu"))
     observer, manipulator = CosimObserver.create_last_value(), CosimManipulator.create_override()
     if not (execution.add_observer(observer) and execution.add_manipulator(manipulator)):
         raise RuntimeError(get_last_error_message())
     reference = {v.name.decode(): v.reference for v in execution.slave_variables(slave)}
-    for name, value in {**experiment_task.settings, **experiment_task.inputs_at(0)}.items():
+    for name, value in {**experiment_task.start_values, **experiment_task.inputs_at(0)}.items():
         kinds = {bool: "boolean", int: "integer", str: "string"}
         setter = getattr(execution, f"{kinds.get(type(value), 'real')}_initial_value")
         if not setter(slave, reference[name], value):
             raise RuntimeError(f"{name} = {value!r}: {get_last_error_message()}")
     rows: OutputRows = [None]
-    for i in range(len(experiment_task.times) - 1):
+    for i in range(len(experiment_task.communication_points) - 1):
         inputs = experiment_task.inputs_at(i)
         for kind in set(experiment_task.variable_kinds.values()):
             if names := [name for name in inputs if experiment_task.variable_kinds[name] == kind]:
@@ -128,21 +133,21 @@ def run_libcosim(experiment_task: ExperimentTask, messages: list[str]) -> Output
         row: dict[str, float] = {}
         for kind in set(experiment_task.variable_kinds.values()):
             if names := [
-                name for name in experiment_task.outputs if experiment_task.variable_kinds[name] == kind
+                name for name in experiment_task.output_names if experiment_task.variable_kinds[name] == kind
             ]:
                 getter = getattr(observer, f"last_{kind}_values")
                 row |= zip(names, map(float, getter(slave, [reference[name] for name in names])), strict=True)
-        rows.append([row[name] for name in experiment_task.outputs])
+        rows.append([row[name] for name in experiment_task.output_names])
     return rows
 
 
-def load_importer(importer: str) -> None:
+def load_importer(importer_name: str) -> None:
     """Load the library of an importer; ImportError or OSError if it is missing."""
-    if importer == "ecos":
+    if importer_name == "ecos":
         from ecospy import EcosSimulationStructure
 
         EcosSimulationStructure()
-    elif importer == "libcosim":
+    elif importer_name == "libcosim":
         from libcosimpy.CosimExecution import CosimExecution
 
         CosimExecution.from_step_size(step_size=1e9)
@@ -150,29 +155,33 @@ def load_importer(importer: str) -> None:
 
 def _check_variable_types(experiment_task: ExperimentTask) -> None:
     """Raise ValueError if a variable is an Enumeration or Int64: ecos and libcosim do not support them."""
-    variables = {v.name: v for v in read_description(experiment_task.fmu).modelVariables}
-    for name in (*experiment_task.settings, *experiment_task.inputs, *experiment_task.outputs):
+    variables = {v.name: v for v in read_description(experiment_task.fmu_path).modelVariables}
+    for name in (*experiment_task.start_values, *experiment_task.input_values, *experiment_task.output_names):
         if variables[name].type in ("Enumeration", "Int64"):
-            raise ValueError(f"{name} is of type {variables[name].type}, which this importer does not take")
+            raise ValueError(
+                f"{name} is of type {variables[name].type}, which this importer does not take; use fmpy"
+            )
 
 
 IMPORTERS: Mapping[str, Mapping[str, ExecuteFunction]] = {
-    "fmpy": {CO_SIMULATION: run_fmpy, MODEL_EXCHANGE: exchange.run_fmpy_exchange},
+    "fmpy": {CO_SIMULATION: run_fmpy, MODEL_EXCHANGE: exchange.run_fmpy_model_exchange},
     "ecos": {CO_SIMULATION: run_ecos},
     "libcosim": {CO_SIMULATION: run_libcosim},
 }
 """{importer: {interface: function that executes an experiment}}."""
-IMPORTER_PACKAGES = {"fmpy": "fmpy", "ecos": "ecospy", "libcosim": "libcosimpy"}
+PYTHON_PACKAGES_OF_IMPORTERS = {"fmpy": "fmpy", "ecos": "ecospy", "libcosim": "libcosimpy"}
 """{importer: Python package}."""
-SYSTEM_LIBRARIES = {"ecos": "libtbb12", "libcosim": "libatomic1"}
+DEBIAN_PACKAGES_OF_IMPORTERS = {"ecos": "libtbb12", "libcosim": "libatomic1"}
 """{importer: Debian package of a library that the importer loads}."""
 SUPPORTED_FMI_VERSIONS = {"fmpy": "23", "ecos": "23", "libcosim": "2"}
 """{importer: major versions of FMI that it supports}; libcosim crashes with other versions."""
 
 
-def list_interfaces(importer: str) -> list[str]:
+def list_supported_interfaces(importer_name: str) -> list[str]:
     """FMI interfaces (co-simulation, model exchange) that an importer supports on this platform.
 
     Model exchange needs the solver of fmpy.
     """
-    return [name for name in IMPORTERS[importer] if name != MODEL_EXCHANGE or exchange.has_cvode_solver()]
+    return [
+        name for name in IMPORTERS[importer_name] if name != MODEL_EXCHANGE or exchange.has_cvode_solver()
+    ]

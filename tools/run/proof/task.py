@@ -5,9 +5,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..host import Instance
+from ..host import FmuInstance
 
-REAL_TYPES = ("Real", "Float64")
+FMI_REAL_TYPES = ("Real", "Float64")
 """Types of real variables in FMI 2.0 and 3.0."""
 
 
@@ -15,33 +15,33 @@ REAL_TYPES = ("Real", "Float64")
 class ExperimentTask:
     """Task for an importer: experiment with an FMU, ready to be executed.
 
-    fmu, folder : path of the FMU, and of the folder where it is unpacked
-    interface : FMI interface, one of INTERFACES
-    settings  : {variable: start value}
-    times     : communication points (n) [s]
-    inputs    : {input: values (n)}; at a jump the value after it
-    inputs_before_jump : {input: values (n)}; at a jump the value before it
-    outputs   : names of the variables to be read
+    fmu_path, fmu_folder : path of the FMU, and of the folder where it is unpacked
+    fmi_interface : FMI interface, co-simulation or model exchange
+    start_values : {variable: start value}
+    communication_points : communication points (n) [s]
+    input_values : {input: values (n)}; at a jump the value after it
+    input_values_before_jump : {input: values (n)}; at a jump the value before it
+    output_names : names of the variables to be read, in the order of the columns of the result
     variable_kinds     : {variable: kind} of inputs and outputs: "real", "integer" or "boolean"
-    tolerance : relative tolerance of the solver [1]
+    solver_tolerance : relative tolerance of the solver [1]
     comparison_times : times [s] at which outputs are compared; empty: outputs at all communication points
     """
 
-    fmu: str
-    folder: str
-    interface: str
-    settings: Mapping[str, object] = field(default_factory=dict)
-    times: Sequence[float] = ()
-    inputs: Mapping[str, Sequence[float]] = field(default_factory=dict)
-    inputs_before_jump: Mapping[str, Sequence[float]] = field(default_factory=dict)
-    outputs: Sequence[str] = ()
+    fmu_path: str
+    fmu_folder: str
+    fmi_interface: str
+    start_values: Mapping[str, object] = field(default_factory=dict)
+    communication_points: Sequence[float] = ()
+    input_values: Mapping[str, Sequence[float]] = field(default_factory=dict)
+    input_values_before_jump: Mapping[str, Sequence[float]] = field(default_factory=dict)
+    output_names: Sequence[str] = ()
     variable_kinds: Mapping[str, str] = field(default_factory=dict)
-    tolerance: float = 1e-5
+    solver_tolerance: float = 1e-5
     comparison_times: Sequence[float] = ()
 
     def inputs_at(self, point_index: int) -> dict[str, float]:
-        """Inputs {name: value} at the communication point i; at a jump the value after it."""
-        return {name: values[point_index] for name, values in self.inputs.items()}
+        """Inputs {name: value} at the communication point with an index; at a jump the value after it."""
+        return {name: values[point_index] for name, values in self.input_values.items()}
 
     @property
     def step_size(self) -> float:
@@ -49,25 +49,32 @@ class ExperimentTask:
 
         Raises ValueError if step sizes differ, or if the experiment does not start at zero.
         """
-        if self.times[0] != 0.0:
-            raise ValueError(f"begins at {self.times[0]:g} s, this importer begins at 0")
-        size = (self.times[-1] - self.times[0]) / max(len(self.times) - 1, 1)
-        if any(abs(time - i * size) > 1e-6 * size for i, time in enumerate(self.times)):
-            raise ValueError("has steps of different size, this importer has one")
+        if self.communication_points[0] != 0.0:
+            raise ValueError(
+                f"its start time is {self.communication_points[0]:g} s; this importer starts at 0 s only, "
+                "use fmpy"
+            )
+        size = (self.communication_points[-1] - self.communication_points[0]) / max(
+            len(self.communication_points) - 1, 1
+        )
+        if any(abs(time - i * size) > 1e-6 * size for i, time in enumerate(self.communication_points)):
+            raise ValueError("its steps have different sizes; this importer takes equal steps: use fmpy")
         return size
 
-    def mask_unneeded_rows(self, rows: "OutputRows") -> "OutputRows":
+    def mask_unneeded_rows(self, output_rows: "OutputRows") -> "OutputRows":
         """Replace rows of outputs that are not needed for the comparison with references by None.
 
         Rows next to a comparison time, and the first and the last row, are kept.
         """
-        available = np.array([i for i, row in enumerate(rows) if row is not None], dtype=int)
+        available = np.array([i for i, row in enumerate(output_rows) if row is not None], dtype=int)
         if not (len(self.comparison_times) and available.size):
-            return rows
-        after = np.searchsorted(np.take(self.times, available), self.comparison_times, side="right")
+            return output_rows
+        after = np.searchsorted(
+            np.take(self.communication_points, available), self.comparison_times, side="right"
+        )
         neighbours = np.clip([after - 1, after], 0, available.size - 1)
         needed = {*available[neighbours.ravel()].tolist(), int(available[0]), int(available[-1])}
-        return [row if i in needed else None for i, row in enumerate(rows)]
+        return [row if i in needed else None for i, row in enumerate(output_rows)]
 
 
 OutputRows = list[list[float] | None]
@@ -76,8 +83,8 @@ ExecuteFunction = Callable[[ExperimentTask, list[str]], OutputRows]
 """Function of an importer: (task, messages) -> rows; it appends the messages of the FMU."""
 
 
-def make_output_reader(instance: Instance, outputs: Sequence[str]) -> Callable[[], list[float]]:
-    """Make the function that reads the outputs of an instance; if all are real variables, in one call."""
-    if all(instance.variables[name].type in REAL_TYPES for name in outputs):
-        return instance.group_real_variables(outputs).get_values
-    return lambda: [float(instance.get_value(name)) for name in outputs]
+def make_output_reader(fmu_instance: FmuInstance, output_names: Sequence[str]) -> Callable[[], list[float]]:
+    """Make a function that reads the outputs of an FMU instance; if all are real, in one FMI call."""
+    if all(fmu_instance.variables[name].type in FMI_REAL_TYPES for name in output_names):
+        return fmu_instance.group_real_variables(output_names).get_values
+    return lambda: [float(fmu_instance.get_value(name)) for name in output_names]

@@ -21,7 +21,7 @@ _FMU_REFUSAL_PATTERN = re.compile(r"fmi[23](?:Error|Fatal|Discard)\s+(?P<reason>
 
 
 def main() -> None:
-    """Execute the tasks read from standard input, and write the answers to standard output."""
+    """Execute the experiments from standard input in an importer; write the answers to standard output."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     replies = os.fdopen(os.dup(1), "w", encoding="utf-8")
     document = json.load(sys.stdin)
@@ -31,14 +31,16 @@ def main() -> None:
         functions = importers.IMPORTERS[document["importer"]]
         for task in document["tasks"]:
             reads_start_values = task.pop("start", False)
-            execute = importers.read_start_values if reads_start_values else functions[task["interface"]]
+            execute = importers.read_start_values if reads_start_values else functions[task["fmi_interface"]]
             reply = _execute_task(execute, task, log)
             replies.write(json.dumps(reply) + "\n")
             replies.flush()
 
 
 def _execute_task(execute_experiment: Any, task_fields: dict[str, Any], log_file: TextIO) -> dict[str, Any]:
-    """Execute a task of an importer and return the answer: {"rows", "messages"} or {"error", "messages"}.
+    """Execute an experiment in an importer; return its outputs or error, and the messages of the FMU.
+
+    The answer is {"rows": outputs at the communication points} or {"error": text}, with "messages".
 
     execute_experiment : function of the importer
     log_file           : file with the output of the importer
@@ -54,12 +56,9 @@ def _execute_task(execute_experiment: Any, task_fields: dict[str, Any], log_file
     except Exception as failure:  # importers raise bare Exception
         error = " ".join(str(failure).split()) or type(failure).__name__
     log_file.seek(begin)
-    refused = _FMU_REFUSAL_PATTERN.search(log_file.read())
-    if refused:
+    if refused := _FMU_REFUSAL_PATTERN.search(log_file.read()):
         error = refused["reason"]
-    elif error and messages:
-        error = messages[0]
-    error = error.removeprefix(f"{task_fields['fmu']}: ")
+    error = error.removeprefix(f"{task_fields['fmu_path']}: ")
     return {"messages": messages} | ({"error": error} if error else {"rows": rows})
 
 

@@ -25,74 +25,80 @@ MAX_CYCLE_COUNT = 1000
 """Largest number of load cycles [1]."""
 MAX_AMPLITUDE_OVER_NOMINAL = 1e4
 """Largest amplitude over the nominal value of the input [1]: 10 mm of a relative displacement."""
-WORK_ROUND_OFF_OVER_BOX_AREA = 1e-12
+MAX_ROUND_OFF_WORK_OVER_BOUNDING_BOX_AREA = 1e-12
 """Work over the area of the loop's bounding box [1] below which the work is round-off."""
-ENERGY_UNIT = units.base_exponents("J")
+JOULE_EXPONENTS = units.base_exponents("J")
 """Exponents of the SI base units of the joule."""
-FORCE_UNITS = (units.base_exponents("N"), units.base_exponents("N.m"))
-"""Units of a force and of a torque; the other of two conjugate variables is the motion."""
+FORCE_AND_TORQUE_UNITS = (units.base_exponents("N"), units.base_exponents("N.m"))
+"""Units of a force and of a torque; the other of two conjugate variables is the displacement or rotation."""
 LOOP_COLUMN_NAMES = {"m": ("displacement", "force"), "rad": ("angle", "torque")}
-"""{unit of the motion: names of the columns of motion and force}, as `jointfmu fit loop` reads them."""
+"""{unit of the displacement: column names of displacement and force}, as `jointfmu fit loop` reads them."""
 
 
 @dataclass(frozen=True, slots=True)
-class CyclicPath:
+class CyclicInputPath:
     """Path of an FMU's input in load cycles: first loading to an amplitude, then cycles about a centre.
 
-    centre : value of the input at the start and in the middle of the cycles
-    shape  : waveform, one of WAVEFORMS
-    points : number of points of a cycle, a multiple of four
-    cycles : number of cycles after the first loading; the last cycle is evaluated
+    centre_value     : value of the input at the start and in the middle of the cycles
+    waveform         : waveform, one of WAVEFORMS
+    points_per_cycle : number of points of a cycle, a multiple of four
+    cycle_count      : number of cycles after the first loading; the last cycle is evaluated
     """
 
-    centre: float = 0.0
-    shape: str = WAVEFORMS[0]
-    points: int = DEFAULT_POINTS_PER_CYCLE
-    cycles: int = DEFAULT_CYCLE_COUNT
+    centre_value: float = 0.0
+    waveform: str = WAVEFORMS[0]
+    points_per_cycle: int = DEFAULT_POINTS_PER_CYCLE
+    cycle_count: int = DEFAULT_CYCLE_COUNT
 
     def __post_init__(self) -> None:
-        if not np.isfinite(self.centre):
-            raise ValueError(f"about = {self.centre:g} is outside (-inf, inf): must be finite")
-        if self.points % 4 or not MIN_POINTS_PER_CYCLE <= self.points <= MAX_POINTS_PER_CYCLE:
+        if not np.isfinite(self.centre_value):
+            raise ValueError(f"about = {self.centre_value:g} is outside (-inf, inf): must be finite")
+        if (
+            self.points_per_cycle % 4
+            or not MIN_POINTS_PER_CYCLE <= self.points_per_cycle <= MAX_POINTS_PER_CYCLE
+        ):
             raise ValueError(
-                f"points = {self.points}, allowed are multiples of 4 from {MIN_POINTS_PER_CYCLE} to "
-                f"{MAX_POINTS_PER_CYCLE}"
+                f"points = {self.points_per_cycle}, allowed are multiples of 4 from {MIN_POINTS_PER_CYCLE} "
+                f"to {MAX_POINTS_PER_CYCLE}"
             )
-        if not 1 <= self.cycles <= MAX_CYCLE_COUNT:
-            raise ValueError(f"cycles = {self.cycles} is outside [1, {MAX_CYCLE_COUNT}]")
+        if not 1 <= self.cycle_count <= MAX_CYCLE_COUNT:
+            raise ValueError(f"cycles = {self.cycle_count} is outside [1, {MAX_CYCLE_COUNT}]")
 
-    def input_values(self, amplitude: float) -> Array:
+    def compute_input_values(self, amplitude: float) -> Array:
         """Values of the input: first loading to an amplitude, then full cycles from there."""
         if not 0.0 < amplitude < np.inf:
             raise ValueError(f"loop = {amplitude:g} is outside (0, inf): the amplitude of the input")
-        phase = np.arange(self.points // 4 + self.cycles * self.points + 1) / self.points
+        phase = (
+            np.arange(self.points_per_cycle // 4 + self.cycle_count * self.points_per_cycle + 1)
+            / self.points_per_cycle
+        )
         turned = np.abs((phase + 0.25) % 1.0 - 0.5)  # 1/4 at the centre, 0 at the upper end
-        value = 1.0 - 4.0 * turned if self.shape == "triangle" else np.sin(2.0 * np.pi * phase)
-        return np.asarray(self.centre + amplitude * value)
+        value = 1.0 - 4.0 * turned if self.waveform == "triangle" else np.sin(2.0 * np.pi * phase)
+        return np.asarray(self.centre_value + amplitude * value)
 
 
 @dataclass(frozen=True, slots=True)
 class HysteresisLoop:
-    """Hysteresis loop of one amplitude: first loading and cycles.
+    """Hysteresis loop of one amplitude of an FMU's input: first loading and cycles.
 
-    motion, force : (n) motion, and force on the joint, positive in the direction of the motion
-    cycle_start   : index of the first point of the last cycle, which ends at the last point
-    result        : all outputs along the path
+    displacements, forces  : (n) displacement or rotation, and force or torque on the joint in its direction
+    last_cycle_start_index : index of the first point of the last cycle, which ends at the last point
+    path_result            : all inputs and outputs of the FMU along the path
     """
 
-    motion: Array
-    force: Array
-    cycle_start: int
-    result: ramp.RampResult
+    displacements: Array
+    forces: Array
+    last_cycle_start_index: int
+    path_result: ramp.RampResult
 
     @property
     def _last_cycle(self) -> tuple[Array, Array]:
-        """Motion and force of the last cycle."""
-        return self.motion[self.cycle_start :], self.force[self.cycle_start :]
+        """Displacements and forces at the points of the last load cycle."""
+        return self.displacements[self.last_cycle_start_index :], self.forces[self.last_cycle_start_index :]
 
     @property
-    def amplitudes(self) -> tuple[float, float]:
-        """Amplitudes of motion and force: half of their ranges in the last cycle."""
+    def displacement_and_force_amplitude(self) -> tuple[float, float]:
+        """Amplitudes of displacement and force: half of their ranges in the last cycle."""
         motion, force = self._last_cycle
         return 0.5 * float(np.ptp(motion)), 0.5 * float(np.ptp(force))
 
@@ -102,16 +108,18 @@ class HysteresisLoop:
         motion, force = self._last_cycle
         work = float(np.sum(0.5 * (force[1:] + force[:-1]) * np.diff(motion)))
         return (
-            work if abs(work) > WORK_ROUND_OFF_OVER_BOX_AREA * float(np.ptp(motion) * np.ptp(force)) else 0.0
+            work
+            if abs(work) > MAX_ROUND_OFF_WORK_OVER_BOUNDING_BOX_AREA * float(np.ptp(motion) * np.ptp(force))
+            else 0.0
         )
 
-    def compute_results(self) -> dict[str, float]:
-        """Results of the loop: {name: value}.
+    def compute_loop_quantities(self) -> dict[str, float]:
+        """Compute amplitudes, secant stiffness, energy loss and loss factor of the loop: {name: value}.
 
         The secant stiffness K is that between the ends of the loop. The loss factor is loss/(pi K a^2) with
-        the amplitude a of the motion.
+        the amplitude a of the displacement.
         """
-        motion, force = self.amplitudes
+        motion, force = self.displacement_and_force_amplitude
         stiffness = force / motion
         found = {
             "motion": motion,
@@ -120,118 +128,140 @@ class HysteresisLoop:
             "loss": self.energy_loss,
             "loss_factor": self.energy_loss / (np.pi * force * motion) if force else 0.0,
         }
-        if "E_loss" in self.result.columns:
-            found["E_loss"] = float(np.diff(self.result.columns["E_loss"][[self.cycle_start, -1]])[0])
+        if "E_loss" in self.path_result.variable_columns:
+            found["E_loss"] = float(
+                np.diff(self.path_result.variable_columns["E_loss"][[self.last_cycle_start_index, -1]])[0]
+            )
         return found
 
 
 @dataclass(frozen=True, slots=True)
 class HysteresisLoops:
-    """Hysteresis loops of one FMU.
+    """Hysteresis loops of one FMU, for several amplitudes of one input.
 
-    motion_name, force_name : names of the variables
-    units                   : units of motion and force
-    force_sign              : force on the joint over the variable `force_name`: +1 or -1
-    loops                   : one loop for each amplitude, in the requested order
+    displacement_name, force_name : names of the variables
+    displacement_and_force_units  : units of displacement (or rotation) and force (or torque)
+    force_sign                    : sign of the variable `force_name` as a force on the joint in the direction
+        of the displacement: +1 or -1
+    loops                         : one loop for each amplitude, in the requested order
     """
 
-    motion_name: str
+    displacement_name: str
     force_name: str
-    units: tuple[str, str]
+    displacement_and_force_units: tuple[str, str]
     force_sign: float
     loops: Sequence[HysteresisLoop]
 
     @property
-    def column_names(self) -> tuple[str, str]:
-        """Names of the columns of motion and force in files, as `jointfmu fit loop` reads them."""
-        return LOOP_COLUMN_NAMES[self.units[0]]
+    def loop_column_names(self) -> tuple[str, str]:
+        """Column names of displacement and force in CSV files, which `jointfmu fit loop` reads."""
+        return LOOP_COLUMN_NAMES[self.displacement_and_force_units[0]]
 
     @property
-    def messages(self) -> tuple[str, ...]:
-        """Log messages of the FMU in all loops."""
-        return tuple(dict.fromkeys(text for loop in self.loops for text in loop.result.messages))
+    def log_messages(self) -> tuple[str, ...]:
+        """Log messages of the FMU from all loops."""
+        return tuple(dict.fromkeys(text for loop in self.loops for text in loop.path_result.log_messages))
 
     @property
-    def result_units(self) -> dict[str, str]:
-        """Units of the results of a loop: {name: unit}, without dimensionless results."""
-        stiffness = "N/m" if self.units[0] == "m" else "N.m/rad"
-        return {"motion": self.units[0], "force": self.units[1], "secant_stiffness": stiffness, "loss": "J"}
+    def loop_quantity_units(self) -> dict[str, str]:
+        """Units {name: unit} of a loop's amplitudes, secant stiffness and energy loss."""
+        stiffness = "N/m" if self.displacement_and_force_units[0] == "m" else "N.m/rad"
+        return {
+            "motion": self.displacement_and_force_units[0],
+            "force": self.displacement_and_force_units[1],
+            "secant_stiffness": stiffness,
+            "loss": "J",
+        }
 
-    def compute_loop_results(self) -> list[dict[str, float]]:
-        """Results of each loop: {name: value}."""
-        return [loop.compute_results() for loop in self.loops]
+    def compute_quantities_of_loops(self) -> list[dict[str, float]]:
+        """Compute amplitudes, stiffness and energy loss of each loop: {name: value}."""
+        return [loop.compute_loop_quantities() for loop in self.loops]
 
-    def format_table(self) -> str:
-        """Format the results of the loops as CSV text with six digits, one row for each loop."""
-        rows = self.compute_loop_results()
-        own = dict(zip(("motion", "force"), self.column_names, strict=True))
-        given = {"E_loss": "J", "loss_factor": "1"} | self.result_units
+    def format_quantity_table(self) -> str:
+        """Format stiffness and energy loss of each loop as a row of CSV text, with six digits."""
+        rows = self.compute_quantities_of_loops()
+        own = dict(zip(("motion", "force"), self.loop_column_names, strict=True))
+        given = {"E_loss": "J", "loss_factor": "1"} | self.loop_quantity_units
         return columns.format_table(
             [(own.get(name, name), given[name]) for name in rows[0]],
             [np.array([row[name] for row in rows]) for name in rows[0]],
-            digits=6,
+            significant_digits=6,
         )
 
-    def format_csv(self) -> str:
+    def format_point_table(self) -> str:
         """Format all points of all loops as CSV text that `jointfmu fit loop` reads.
 
-        Columns: number of the loop, motion, force, outputs.
+        Columns: number of the loop, displacement, force, outputs.
         """
-        first = self.loops[0].result
-        others = [name for name in first.columns if name not in (self.motion_name, self.force_name)]
-        names = [*self.column_names, *others]
+        first = self.loops[0].path_result
+        others = [
+            name for name in first.variable_columns if name not in (self.displacement_name, self.force_name)
+        ]
+        names = [*self.loop_column_names, *others]
         heads = [
             ("run", "1"),
-            *zip(names, (*self.units, *(first.units[name] for name in others)), strict=True),
+            *zip(
+                names,
+                (*self.displacement_and_force_units, *(first.variable_units[name] for name in others)),
+                strict=True,
+            ),
         ]
         parts = [
             [
-                np.full(loop.motion.size, float(number)),
-                loop.motion,
-                loop.force,
-                *(loop.result.columns[name] for name in others),
+                np.full(loop.displacements.size, float(number)),
+                loop.displacements,
+                loop.forces,
+                *(loop.path_result.variable_columns[name] for name in others),
             ]
             for number, loop in enumerate(self.loops, 1)
         ]
         sign = "-" if self.force_sign < 0.0 else ""
-        told = (
-            f"# {self.column_names[0]} = {self.motion_name}, {self.column_names[1]} = {sign}{self.force_name}"
+        displacement_column, force_column = self.loop_column_names
+        meanings = (
+            f"# {displacement_column} = {self.displacement_name}, {force_column} = {sign}{self.force_name}"
         )
         return columns.format_table(
-            heads, [np.concatenate(part) for part in zip(*parts, strict=True)], header_lines=[told]
+            heads, [np.concatenate(part) for part in zip(*parts, strict=True)], header_lines=[meanings]
         )
 
 
 def run_loops(
-    fmu: str | Path,
+    fmu_path: str | Path,
     input_name: str,
     amplitudes: Sequence[float],
-    cyclic_path: CyclicPath,
-    output: str | None = None,
-    settings: Mapping[str, object] | None = None,
+    cyclic_path: CyclicInputPath,
+    output_name: str | None = None,
+    start_values: Mapping[str, object] | None = None,
 ) -> HysteresisLoops:
     """Run an FMU along load cycles of one input, one instance for each amplitude, from rest.
 
     All other inputs are constant.
 
-    output : output that is energy-conjugate to the input; None: the conjugate output with the same suffix,
-        `f_x` for `s_rel_x`, `tau2` for `phi2`
+    output_name : output that is energy-conjugate to the input; None: the conjugate output with the same
+        suffix, `f_x` for `s_rel_x`, `tau2` for `phi2`
 
     Raises ValueError as `ramp.run_ramp`, for an amplitude that is not positive, or if no output is conjugate
     to the input.
     """
-    points = [cyclic_path.input_values(amplitude) for amplitude in amplitudes]
-    with unpack_fmu(fmu) as (_, description):
-        _check_amplitudes(description, input_name, amplitudes)
-        output = find_conjugate_output(*input_and_output_units(description), input_name, output, str(fmu))
+    points = [cyclic_path.compute_input_values(amplitude) for amplitude in amplitudes]
+    with unpack_fmu(fmu_path) as (_, model_description):
+        _check_amplitudes(model_description, input_name, amplitudes)
+        output_name = find_conjugate_output(
+            *input_and_output_units(model_description), input_name, output_name, str(fmu_path)
+        )
     return loops_from_results(
-        [ramp.run_path(fmu, input_name, each, settings) for each in points], input_name, output, cyclic_path
+        [ramp.run_path(fmu_path, input_name, each, start_values) for each in points],
+        input_name,
+        output_name,
+        cyclic_path,
     )
 
 
-def _check_amplitudes(description: "ModelDescription", input_name: str, amplitudes: Sequence[float]) -> None:
-    """Raise ValueError for an amplitude far above the nominal value of the input: it is in another unit."""
-    for variable in description.modelVariables:
+def _check_amplitudes(
+    model_description: "ModelDescription", input_name: str, amplitudes: Sequence[float]
+) -> None:
+    """Raise ValueError if an amplitude is so far above the input's nominal value that its unit is wrong."""
+    for variable in model_description.modelVariables:
         if variable.name == input_name and variable.nominal and variable.unit:
             nominal = float(variable.nominal)
             largest = MAX_AMPLITUDE_OVER_NOMINAL * nominal
@@ -239,31 +269,37 @@ def _check_amplitudes(description: "ModelDescription", input_name: str, amplitud
                 if amplitude > largest:
                     raise ValueError(
                         f"loop = {amplitude:g} {variable.unit} of {input_name} is outside (0, {largest:g}] "
-                        f"{variable.unit}: values are in SI units, usual are {nominal:g} {variable.unit}"
+                        f"{variable.unit}: values are in SI units, usual is about {nominal:g} "
+                        f"{variable.unit}"
                     )
 
 
 def loops_from_results(
-    results: Sequence[ramp.RampResult], input_name: str, output: str, cyclic_path: CyclicPath
+    ramp_results: Sequence[ramp.RampResult], input_name: str, output_name: str, cyclic_path: CyclicInputPath
 ) -> HysteresisLoops:
-    """Hysteresis loops from results along load cycles of an input, one for each amplitude.
+    """Make hysteresis loops from results along load cycles of an input, one for each amplitude.
 
-    output : output that is energy-conjugate to the input
+    output_name : output that is energy-conjugate to the input
     """
-    first = max(results, key=lambda result: float(np.ptp(result.columns[input_name])))
-    driven = units.base_exponents(first.units[input_name]) in FORCE_UNITS
-    motion, force = (output, input_name) if driven else (input_name, output)
-    x, y = first.columns[motion], first.columns[force]
+    first = max(ramp_results, key=lambda result: float(np.ptp(result.variable_columns[input_name])))
+    driven = units.base_exponents(first.variable_units[input_name]) in FORCE_AND_TORQUE_UNITS
+    motion, force = (output_name, input_name) if driven else (input_name, output_name)
+    x, y = first.variable_columns[motion], first.variable_columns[force]
     sign = -1.0 if np.sum((x - x.mean()) * (y - y.mean())) < 0.0 else 1.0
-    closed = cyclic_path.points // 4 + (cyclic_path.cycles - 1) * cyclic_path.points
-    loops = [HysteresisLoop(r.columns[motion], sign * r.columns[force], closed, r) for r in results]
-    return HysteresisLoops(motion, force, (first.units[motion], first.units[force]), sign, loops)
+    closed = cyclic_path.points_per_cycle // 4 + (cyclic_path.cycle_count - 1) * cyclic_path.points_per_cycle
+    loops = [
+        HysteresisLoop(r.variable_columns[motion], sign * r.variable_columns[force], closed, r)
+        for r in ramp_results
+    ]
+    return HysteresisLoops(
+        motion, force, (first.variable_units[motion], first.variable_units[force]), sign, loops
+    )
 
 
-def input_and_output_units(description: "ModelDescription") -> tuple[dict[str, str], dict[str, str]]:
+def input_and_output_units(model_description: "ModelDescription") -> tuple[dict[str, str], dict[str, str]]:
     """Units of an FMU's inputs, {name: unit}, and of its outputs, from the model description of fmpy."""
     inputs, outputs = (
-        {v.name: v.unit or "1" for v in description.modelVariables if v.causality == causality}
+        {v.name: v.unit or "1" for v in model_description.modelVariables if v.causality == causality}
         for causality in ("input", "output")
     )
     return inputs, outputs
@@ -273,7 +309,7 @@ def find_conjugate_output(
     input_units: Mapping[str, str],
     output_units: Mapping[str, str],
     input_name: str,
-    output: str | None,
+    stated_output: str | None,
     fmu_label: str,
 ) -> str:
     """Find the output that is energy-conjugate to an input: the product of their units is an energy.
@@ -281,7 +317,7 @@ def find_conjugate_output(
     If several outputs are conjugate, the one with the suffix of the input is chosen.
 
     input_units, output_units : {name: unit}
-    output                    : output that the user states; None: find it
+    stated_output             : output that the user states; None: find it
     fmu_label                 : name of the FMU, for messages
 
     Raises ValueError if no output is conjugate, or if the stated output is not.
@@ -289,18 +325,20 @@ def find_conjugate_output(
     if input_name not in input_units:
         raise ValueError(f"{fmu_label}: unknown input {input_name!r}, allowed are {', '.join(input_units)}")
     own = input_units[input_name]
-    fitting = [name for name, unit in output_units.items() if unit != "J" and _is_energy(own, unit)]
-    if output is not None:
-        if output not in fitting:
+    fitting = [
+        name for name, unit in output_units.items() if unit != "J" and _is_energy_unit_product(own, unit)
+    ]
+    if stated_output is not None:
+        if stated_output not in fitting:
             raise ValueError(
-                f"{fmu_label}: {output!r} is not an output whose product with {input_name} is an energy, "
-                f"allowed are {', '.join(fitting) or 'none'}"
+                f"{fmu_label}: {stated_output!r} is not an output whose product with {input_name} is an "
+                f"energy, allowed are {', '.join(fitting) or 'none'}"
             )
-        return output
+        return stated_output
     if not fitting:
         raise ValueError(
-            f"{fmu_label}: no output makes an energy with {input_name} [{own}]; expected a displacement, an "
-            "angle, a force or a torque as input"
+            f"{fmu_label}: no output multiplied by {input_name} [{own}] is an energy; expected a "
+            "displacement, an angle, a force or a torque as input"
         )
     same = [name for name in fitting if variable_suffix(name) == variable_suffix(input_name)]
     return (same or fitting)[0]
@@ -312,7 +350,7 @@ def variable_suffix(variable_name: str) -> str:
     return match[0] if match else ""
 
 
-def _is_energy(first_unit: str, second_unit: str) -> bool:
+def _is_energy_unit_product(first_unit: str, second_unit: str) -> bool:
     """Whether the product of two units is a unit of energy; the radian is ignored."""
     try:
         parts = units.base_exponents(first_unit), units.base_exponents(second_unit)
@@ -321,4 +359,4 @@ def _is_energy(first_unit: str, second_unit: str) -> bool:
     whole = {name: sum(part.get(name, 0) for part in parts) for name in {**parts[0], **parts[1]}}
     return {
         name: n for name, n in whole.items() if n and name != "rad"
-    } == ENERGY_UNIT and first_unit != "1" != second_unit
+    } == JOULE_EXPONENTS and first_unit != "1" != second_unit

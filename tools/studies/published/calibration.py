@@ -19,64 +19,69 @@ from .computed import CalibrationFit, load_published_numbers
 from .reference import PublishedPoint, read_points
 
 
-def calibrate(start_file: ParameterFile) -> ParameterFile:
-    """Fit the calibrated parameters of a joint to the published numbers again.
+def fit_calibrated_parameters(start_parameter_file: ParameterFile) -> ParameterFile:
+    """Repeat the fit of a joint's calibrated parameters to published numbers.
 
-    Raises ValueError if the joint has no calibration points, RuntimeError if a point is not met.
+    Raises ValueError if the joint has no calibrated parameters, RuntimeError if a number is not reproduced.
     """
-    kind = KINDS[start_file.joint]
+    kind = KINDS[start_parameter_file.joint]
     own = load_published_numbers(kind)
-    if not own.calibration:
-        some = [name for name in KINDS if load_published_numbers(KINDS[name]).calibration]
+    if not own.calibration_fits:
+        some = [name for name in KINDS if load_published_numbers(KINDS[name]).calibration_fits]
         raise ValueError(
-            f"joint = {start_file.joint!r} has no calibration points; allowed are {', '.join(some)}"
+            f"joint = {start_parameter_file.joint!r} has no calibration points; allowed are {', '.join(some)}"
         )
-    known = {p.id: p for paper in own.papers for p in read_points(paper) if p.role == "calibration"}
-    for fit in own.calibration:
-        start_file = fit_unknowns(start_file, fit, [known[name] for name in fit.point_ids])
-    return start_file
+    known = {p.id: p for paper in own.paper_names for p in read_points(paper) if p.role == "calibration"}
+    for fit in own.calibration_fits:
+        start_parameter_file = fit_unknowns(
+            start_parameter_file, fit, [known[name] for name in fit.point_ids]
+        )
+    return start_parameter_file
 
 
 def fit_unknowns(
-    start_file: ParameterFile, calibration_fit: CalibrationFit, calibration_points: Sequence[PublishedPoint]
+    start_parameter_file: ParameterFile,
+    calibration_fit: CalibrationFit,
+    calibration_points: Sequence[PublishedPoint],
 ) -> ParameterFile:
-    """Fit the unknowns of one calibration fit to its points.
+    """Fit the parameters of one calibration fit to its published numbers.
 
-    Raises RuntimeError if a point is not met.
+    Raises RuntimeError if a published number is not reproduced.
     """
-    names = list(calibration_fit.unknowns)
+    names = list(calibration_fit.start_value_by_parameter)
     source = "fitted to " + ", ".join(point.id for point in calibration_points)
 
-    def make_parameter_file(log_unknowns: Any) -> ParameterFile:
-        """Make the parameter file with values of the unknowns, from their logarithms."""
-        values = dict(zip(names, np.exp(log_unknowns).tolist(), strict=True))
-        return start_file.with_values(values, "calibration", source)
+    def make_parameter_file(unknown_logarithms: Any) -> ParameterFile:
+        """Make the parameter file with fitted values, from the logarithms of these values."""
+        values = dict(zip(names, np.exp(unknown_logarithms).tolist(), strict=True))
+        return start_parameter_file.with_values(values, "calibration", source)
 
-    residuals = _residual_function(
+    residuals = _make_residual_function(
         make_parameter_file,
-        load_published_numbers(KINDS[start_file.joint]).observable_functions,
+        load_published_numbers(KINDS[start_parameter_file.joint]).observable_functions,
         calibration_points,
     )
-    first = np.log(list(calibration_fit.unknowns.values()))
+    first = np.log(list(calibration_fit.start_value_by_parameter.values()))
     solution = least_squares(residuals, first, xtol=1e-15, ftol=1e-15, gtol=1e-15, max_nfev=400)
     worst = float(np.max(np.abs(solution.fun)))
     if worst > 1e-8:
         raise RuntimeError(
-            f"calibration of {', '.join(names)} does not meet a calibration point: deviation {worst:.2g}"
+            f"calibration of {', '.join(names)} misses a calibration point by a relative {worst:.2g}, "
+            "allowed is 1e-8"
         )
     return make_parameter_file(solution.x)
 
 
-def _residual_function(
+def _make_residual_function(
     make_parameter_file: Callable[[object], ParameterFile],
     observable_functions: Mapping[str, Callable[..., float | bool]],
     calibration_points: Sequence[PublishedPoint],
 ) -> Callable[[object], list[float]]:
-    """Function of the logarithms of the unknowns: relative errors of the calibration points."""
+    """Make the function that a fit minimises: logarithms of the fitted parameters -> relative errors."""
 
-    def residuals(log_unknowns: object) -> list[float]:
-        """Relative errors of the calibration points."""
-        values = make_parameter_file(log_unknowns).values
+    def residuals(unknown_logarithms: object) -> list[float]:
+        """Relative errors [1] of the computed calibration points."""
+        values = make_parameter_file(unknown_logarithms).values
         return [
             observable_functions[p.quantity](values, **p.where) / p.value - 1.0 for p in calibration_points
         ]
@@ -85,4 +90,4 @@ def _residual_function(
 
 
 if __name__ == "__main__":
-    print(format_parameter_file(calibrate(load_default(sys.argv[1]))), end="")
+    print(format_parameter_file(fit_calibrated_parameters(load_default(sys.argv[1]))), end="")

@@ -13,33 +13,34 @@ from ...common.joint_parts import load_tool_module
 
 @dataclass(frozen=True, slots=True)
 class CalibrationFit:
-    """Fit to calibration points: parameters that a paper does not state are fitted to its published numbers.
+    """Fit of parameters that a paper does not state to numbers that the paper publishes.
 
-    unknowns  : {parameter: start value > 0}; their logarithms are fitted, so they stay positive
-    point_ids : ids of the calibration points, as many as unknowns
+    start_value_by_parameter : {fitted parameter: start value > 0}; the fit varies the logarithms of the
+        parameters, so they stay positive
+    point_ids                : ids of the published numbers, as many as parameters
     """
 
-    unknowns: Mapping[str, float]
+    start_value_by_parameter: Mapping[str, float]
     point_ids: Sequence[str]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PublishedNumbers:
-    """Published numbers of a joint, and functions that compute them.
+    """Papers with published numbers of one kind of joint, and the functions that compute these numbers.
 
-    papers               : names of the papers' files in models/reference/
-    observable_functions : {quantity of a reference file: function of the parameter set and the point's
-                           arguments}
-    calibration          : fits to calibration points, in the order of execution
+    paper_names          : names of the papers' files in models/reference/
+    observable_functions : {quantity in such a file: function that computes the quantity from the parameter
+        set and the arguments of the published number}
+    calibration_fits     : fits of parameters to published numbers, in the order of execution
     """
 
-    papers: Sequence[str] = ()
+    paper_names: Sequence[str] = ()
     observable_functions: Mapping[str, Callable[..., float | bool]] = field(default_factory=dict)
-    calibration: Sequence[CalibrationFit] = ()
+    calibration_fits: Sequence[CalibrationFit] = ()
 
 
 def load_published_numbers(joint_kind: JointKind) -> PublishedNumbers:
-    """Import the published numbers that a joint defines; the result has no papers if it defines none."""
+    """Import the published numbers that a kind of joint defines; without papers if it defines none."""
     own: PublishedNumbers = getattr(
         load_tool_module(joint_kind, "published"), "PUBLISHED_NUMBERS", PublishedNumbers()
     )

@@ -18,7 +18,7 @@ from ...common.shown import align_columns
 
 REFERENCE_TOLERANCE = 1e-8
 """Relative tolerance [1]: the quadrature is accurate to 1e-11, the inversion of the load to 1e-12."""
-_HEADINGS = ("law", "quantity", "values", "largest deviation", "allowed", "at", "verdict")
+_TABLE_HEADINGS = ("law", "quantity", "values", "largest deviation", "allowed", "at", "verdict")
 """Headings of the printed table."""
 
 
@@ -26,9 +26,9 @@ _HEADINGS = ("law", "quantity", "values", "largest deviation", "allowed", "at", 
 class LawComparison:
     """Largest deviation of one quantity of a law from its reference values.
 
-    value_count        : number of reference values
-    error              : relative deviation [1] with the largest magnitude
-    argument           : name and value [SI] of the law's argument at the largest deviation
+    value_count         : number of reference values
+    error               : relative deviation [1] with the largest magnitude
+    argument            : name and value [SI] of the law's argument at the largest deviation
     reference, computed : values [SI] at this argument
     """
 
@@ -57,7 +57,10 @@ class LawComparison:
 
 
 def read_reference_cases() -> list[dict[str, Any]]:
-    """Read the reference values of all laws: `law`, `parameters` by name, columns `values` (n) [SI]."""
+    """Read the reference values of all laws, one dictionary for each parameter set.
+
+    Keys: `law`, `parameters` {name: value}, `values` {quantity: (n) [SI]}, first the argument of the law.
+    """
     text = (files("jointfmu_models") / "reference" / "laws.toml").read_text(encoding="utf-8")
     cases: list[dict[str, Any]] = tomllib.loads(text)["case"]
     return cases
@@ -71,43 +74,47 @@ def compare_laws() -> list[LawComparison]:
         at = np.array(case["values"].pop(argument))
         parameters = {n: tuple(v) if isinstance(v, list) else v for n, v in case["parameters"].items()}
         is_interface = argument == "pressure"
-        computed = (_evaluate_interface if is_interface else _evaluate_midline)(law, parameters, at)
+        computed = (_evaluate_interface_law if is_interface else _evaluate_drive_midline)(law, parameters, at)
         for quantity, reference in case["values"].items():
             values = np.broadcast_to(computed[quantity], at.shape)
             for x, known, value in zip(at.tolist(), reference, values.tolist(), strict=True):
                 error = (value - known) / abs(known) if known else value
                 one = LawComparison(law, quantity, 1, error, (argument, x), known, value)
                 found.setdefault((law, quantity), []).append(one)
-    return [_largest_deviation(comparisons) for comparisons in found.values()]
+    return [_find_largest_deviation(comparisons) for comparisons in found.values()]
 
 
-def _evaluate_interface(law: str, parameters: Mapping[str, Any], pressure: Array) -> Mapping[str, Any]:
+def _evaluate_interface_law(
+    law_name: str, parameters: Mapping[str, Any], pressure: Array
+) -> Mapping[str, Any]:
     """Quantities of an interface law at pressures (n) [Pa]."""
-    return evaluate_at_pressure(build_parameter_set(LAWS[law], parameters), pressure)
+    return evaluate_at_pressure(build_parameter_set(LAWS[law_name], parameters), pressure)
 
 
-def _evaluate_midline(law: str, parameters: Mapping[str, Any], wind_up: Array) -> Mapping[str, Any]:
+def _evaluate_drive_midline(
+    law_name: str, parameters: Mapping[str, Any], wind_up: Array
+) -> Mapping[str, Any]:
     """Torque and stiffness of the prescribed midline of a drive at wind-ups (n) [rad]."""
     drive: Any = replace_values(
-        load_default("harmonic_drive", law).values, {**parameters, "lost_motion": 0.0}
+        load_default("harmonic_drive", law_name).values, {**parameters, "lost_motion": 0.0}
     )
     torque, stiffness = torque_curve(drive).derivatives(wind_up)
     return {"tau": torque, "K_WTS": stiffness}
 
 
-def _largest_deviation(comparisons: Sequence[LawComparison]) -> LawComparison:
-    """Comparison with the largest relative deviation."""
-    errors = np.abs([c.error for c in comparisons])
-    worst = comparisons[int(np.argmax(np.where(np.isnan(errors), np.inf, errors)))]
-    return LawComparison(**asdict(worst) | {"value_count": len(comparisons)})
+def _find_largest_deviation(law_comparisons: Sequence[LawComparison]) -> LawComparison:
+    """Find the comparison with the largest relative deviation, among those of one quantity of a law."""
+    errors = np.abs([c.error for c in law_comparisons])
+    worst = law_comparisons[int(np.argmax(np.where(np.isnan(errors), np.inf, errors)))]
+    return LawComparison(**asdict(worst) | {"value_count": len(law_comparisons)})
 
 
-def missed_quantities(comparisons: Sequence[LawComparison]) -> list[str]:
+def list_missed_quantities(law_comparisons: Sequence[LawComparison]) -> list[str]:
     """Names LAW.QUANTITY whose deviation from the reference value is outside the tolerance."""
-    return [f"{c.law}.{c.quantity}" for c in comparisons if not c.has_passed]
+    return [f"{c.law}.{c.quantity}" for c in law_comparisons if not c.has_passed]
 
 
-def format_law_table(comparisons: Sequence[LawComparison]) -> str:
+def format_law_table(law_comparisons: Sequence[LawComparison]) -> str:
     """Format the comparison of laws with reference values as a table in text."""
     rows = [
         (
@@ -115,16 +122,17 @@ def format_law_table(comparisons: Sequence[LawComparison]) -> str:
             f"{c.argument[0]} = {c.argument[1]:.4g}",
             "pass" if c.has_passed else "MISS",
         )
-        for c in comparisons
+        for c in law_comparisons
     ]
-    return "\n".join(align_columns([_HEADINGS, *rows]))
+    return "\n".join(align_columns([_TABLE_HEADINGS, *rows]))
 
 
-def format_law_summary(comparisons: Sequence[LawComparison]) -> str:
+def format_law_summary(law_comparisons: Sequence[LawComparison]) -> str:
     """Summary of the comparison in one line: number of laws and values, missed quantities."""
-    laws = dict.fromkeys(c.law for c in comparisons)
-    values = sum(c.value_count for c in comparisons)
+    laws = dict.fromkeys(c.law for c in law_comparisons)
+    values = sum(c.value_count for c in law_comparisons)
     return (
         f"{values} values of the laws {', '.join(laws)} against quadrature of their equations "
-        f"(models/reference/laws.toml): missed: {', '.join(missed_quantities(comparisons)) or 'none'}"
+        "(models/reference/laws.toml): missed: "
+        f"{', '.join(list_missed_quantities(law_comparisons)) or 'none'}"
     )

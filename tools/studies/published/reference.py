@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-ROLES = {
+POINT_ROLES = {
     "calibration": "used for calibration",
     "circular": "met by construction",
     "contradiction": "two numbers of the paper that do not agree",
@@ -37,7 +37,7 @@ _POWER_LAW_GUESS_RULES = ("power law", "growth")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Guess:
+class TrivialGuess:
     """Trivial guess of a published number from calibration points a, b, c, without the model.
 
     rule   : `constant`: a; `power law` through a and b; `offset`: a + b - c; `proportion`: a b/c; `growth`:
@@ -55,11 +55,13 @@ class Guess:
             raise ValueError(f"guess: rule = {self.rule!r}, allowed are {', '.join(_POINTS_PER_GUESS_RULE)}")
         if len(self.points) != _POINTS_PER_GUESS_RULE[self.rule]:
             raise ValueError(
-                f"guess: {len(self.points)} points, a {self.rule} takes {_POINTS_PER_GUESS_RULE[self.rule]}"
+                f"guess: {len(self.points)} points, expected {_POINTS_PER_GUESS_RULE[self.rule]} for the "
+                f"rule {self.rule}"
             )
         if bool(self.over) != (self.rule in _POWER_LAW_GUESS_RULES):
             raise ValueError(
-                f"guess: over = {self.over!r}, a {self.rule} takes {'a name' if not self.over else 'none'}"
+                f"guess: over = {self.over!r}, expected {'a name' if not self.over else 'none'} for the "
+                f"rule {self.rule}"
             )
 
     def __str__(self) -> str:
@@ -84,7 +86,7 @@ class PublishedPoint:
     place     : equation, table or figure in the paper
     printed   : whether the paper prints the number or states the claim; otherwise the value was computed from
         printed numbers
-    role      : one of ROLES
+    role      : use of the number in the comparison, one of POINT_ROLES
     tolerance : allowed error, relative, or absolute in `unit` if `absolute` is True
     basis     : origin of the tolerance
     guess     : trivial guess to compare with an interpolation or a prediction
@@ -104,15 +106,18 @@ class PublishedPoint:
     tolerance: float = CALIBRATION_TOLERANCE
     absolute: bool = False
     basis: str = field(default="fitted")
-    guess: Guess | None = None
+    guess: TrivialGuess | None = None
     text: bool | None = None
 
     def __post_init__(self) -> None:
         where = f"{self.paper}: {self.id}"
-        if self.role not in ROLES:
-            raise ValueError(f"{where}: role = {self.role!r}, allowed are {', '.join(ROLES)}")
+        if self.role not in POINT_ROLES:
+            raise ValueError(f"{where}: role = {self.role!r}, allowed are {', '.join(POINT_ROLES)}")
         if (self.role == "claim") != isinstance(self.value, bool):
-            raise ValueError(f"{where}: value = {self.value!r}, a claim is true or false, others numbers")
+            raise ValueError(
+                f"{where}: role = {self.role!r} with value = {self.value!r}; expected true or false for role "
+                "= 'claim', a number for other roles"
+            )
         if self.guess and self.role not in ROLES_WITH_TRIVIAL_GUESS:
             raise ValueError(
                 f"{where}: role = {self.role!r} has a guess, "
@@ -129,7 +134,7 @@ def read_points(paper: str) -> list[PublishedPoint]:
 
 def _make_point(paper: str, joint: str, point_entry: dict[str, Any]) -> PublishedPoint:
     """Make the published number from its entry in the file of a paper."""
-    guess = {"guess": Guess(**point_entry["guess"])} if "guess" in point_entry else {}
+    guess = {"guess": TrivialGuess(**point_entry["guess"])} if "guess" in point_entry else {}
     return PublishedPoint(paper=paper, joint=joint, **(point_entry | guess))
 
 
@@ -140,7 +145,7 @@ def compute_trivial_guesses(published_points: Sequence[PublishedPoint]) -> dict[
     """
     known = {p.id: p for p in published_points}
 
-    def find_value(point_id: str, requesting_ids: tuple[str, ...]) -> float:
+    def find_point_value(point_id: str, requesting_ids: tuple[str, ...]) -> float:
         """Value of a calibration point, or the guess of another point."""
         point = known.get(point_id)
         if point is not None and point.role == "calibration":
@@ -152,19 +157,20 @@ def compute_trivial_guesses(published_points: Sequence[PublishedPoint]) -> dict[
         return evaluate_guess(point, point.guess, (*requesting_ids, point_id))
 
     def evaluate_guess(
-        published_point: PublishedPoint, guess: Guess, requesting_ids: tuple[str, ...]
+        published_point: PublishedPoint, trivial_guess: TrivialGuess, requesting_ids: tuple[str, ...]
     ) -> float:
         """Trivial guess of a published number by a rule, for example the power law through two points."""
-        a, *more = (find_value(name, requesting_ids) for name in guess.points)
-        if guess.rule in _POWER_LAW_GUESS_RULES:
+        a, *more = (find_point_value(name, requesting_ids) for name in trivial_guess.points)
+        if trivial_guess.rule in _POWER_LAW_GUESS_RULES:
             x, x_a, *others = (
-                p.where[guess.over] for p in (published_point, *(known[name] for name in guess.points))
+                p.where[trivial_guess.over]
+                for p in (published_point, *(known[name] for name in trivial_guess.points))
             )
             (y, z), (x_y, x_z) = (a, *more)[-2:], (x_a, *others)[-2:]
             power = np.log(z / y) / np.log(x_z / x_y)
             return float(a * (x / x_a) ** power)
-        if guess.rule == "offset":
+        if trivial_guess.rule == "offset":
             return a + more[0] - more[1]
-        return a * more[0] / more[1] if guess.rule == "proportion" else a
+        return a * more[0] / more[1] if trivial_guess.rule == "proportion" else a
 
     return {p.id: evaluate_guess(p, p.guess, (p.id,)) for p in published_points if p.guess}

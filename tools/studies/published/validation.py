@@ -11,7 +11,7 @@ from jointfmu.parameters import ParameterFile, load_default
 
 from ...common.shown import align_columns
 from .computed import load_published_numbers
-from .reference import ROLES, UNTESTED_ROLES, PublishedPoint, compute_trivial_guesses, read_points
+from .reference import POINT_ROLES, UNTESTED_ROLES, PublishedPoint, compute_trivial_guesses, read_points
 
 _TABLE_HEADINGS = (
     *("paper", "point", "unit", "published", "computed", "error", "tolerance"),
@@ -27,18 +27,18 @@ class ValidatedPoint:
     """Published number with the computed value and the verdict.
 
     computed_value : computed value, in the unit of the published one
-    error          : relative error of the computed value, or absolute in the unit of the point if its
-        tolerance is absolute; 0 or 1 for a claim
+    error          : error of the computed value: relative [1], or in the unit of the published number if its
+        tolerance is absolute. For a claim: 0 or 1
     has_passed     : whether the error is within the tolerance
-    guess          : trivial guess from calibration points; None: the point has no guess
-    guess_error    : error of the trivial guess, as `error`
+    trivial_guess  : trivial guess from calibration points; None: the point has no guess
+    guess_error    : error of the trivial guess: relative [1], or in the unit of the published number
     """
 
-    point: PublishedPoint
+    published_point: PublishedPoint
     computed_value: float | bool
     error: float
     has_passed: bool
-    guess: float | None = None
+    trivial_guess: float | None = None
     guess_error: float | None = None
 
     @property
@@ -55,20 +55,21 @@ class ValidatedPoint:
     def verdict(self) -> str:
         """Verdict on the point: `pass` or `miss`.
 
-        For a point that tests nothing: `no test`, or `no test, moved` for a miss.
+        For a point that tests nothing (a calibration point, for example): `no test`, or `no test, moved` if
+        the computed value is outside the tolerance.
         """
-        if self.point.role in UNTESTED_ROLES:
+        if self.published_point.role in UNTESTED_ROLES:
             return "no test" if self.has_passed else "no test, moved"
         return "pass" if self.has_passed else "miss"
 
     def to_json(self) -> dict[str, Any]:
         """JSON object of the published number, the computed value, and the verdict as a word."""
-        p = self.point
+        p = self.published_point
         return asdict(p) | {
             "where": dict(p.where),
             "computed": self.computed_value if isfinite(self.computed_value) else None,
             "error": self.error if isfinite(self.error) else None,
-            "guess": self.guess,
+            "guess": self.trivial_guess,
             "guess_error": self.guess_error,
             "guess_rule": str(p.guess) if p.guess else None,
             "nearer": self.nearer_estimate or None,
@@ -77,36 +78,45 @@ class ValidatedPoint:
 
 
 def compare_point(
-    published_point: PublishedPoint, computed_value: float | bool, guess: float | None = None
+    published_point: PublishedPoint, computed_value: float | bool, trivial_guess: float | None = None
 ) -> ValidatedPoint:
     """Compare a computed value, and the trivial guess if there is one, with the published number."""
     if isinstance(published_point.value, bool):
         error = float(computed_value is not published_point.value)
         return ValidatedPoint(published_point, computed_value, error, error == 0.0)
-    error = _point_error(published_point, computed_value)
-    guessed = None if guess is None else _point_error(published_point, guess)
+    error = _compute_point_error(published_point, computed_value)
+    guessed = None if trivial_guess is None else _compute_point_error(published_point, trivial_guess)
     return ValidatedPoint(
-        published_point, computed_value, error, abs(error) <= published_point.tolerance, guess, guessed
+        published_point,
+        computed_value,
+        error,
+        abs(error) <= published_point.tolerance,
+        trivial_guess,
+        guessed,
     )
 
 
-def _point_error(published_point: PublishedPoint, value: float) -> float:
+def _compute_point_error(published_point: PublishedPoint, computed_value: float) -> float:
     """Error of a value with respect to a published number.
 
     The error is relative [1], or, if `point.absolute` is True, in the unit of the published number.
     """
-    return (value - published_point.value) / (1.0 if published_point.absolute else abs(published_point.value))
+    return (computed_value - published_point.value) / (
+        1.0 if published_point.absolute else abs(published_point.value)
+    )
 
 
-def validate(parameter_sets: Mapping[str, ParameterFile] | None = None) -> list[ValidatedPoint]:
+def validate_published_numbers(
+    parameter_files: Mapping[str, ParameterFile] | None = None,
+) -> list[ValidatedPoint]:
     """Compute all published numbers and compare them.
 
-    parameter_sets : {joint: parameter file}; joints without an entry have their default file
+    parameter_files : {joint: parameter file}; joints without an entry have their default file
     """
-    given, rows = parameter_sets or {}, []
+    given, rows = parameter_files or {}, []
     for kind in KINDS.values():
         own = load_published_numbers(kind)
-        for paper in own.papers:
+        for paper in own.paper_names:
             values = (given.get(kind.name) or load_default(kind.name)).values
             observables, known = own.observable_functions, read_points(paper)
             guessed = compute_trivial_guesses(known)
@@ -116,12 +126,16 @@ def validate(parameter_sets: Mapping[str, ParameterFile] | None = None) -> list[
     return rows
 
 
-def missed_points(validated_points: Sequence[ValidatedPoint]) -> list[ValidatedPoint]:
+def select_missed_points(validated_points: Sequence[ValidatedPoint]) -> list[ValidatedPoint]:
     """Published points whose computed value is outside the tolerance.
 
     Calibration points and points met by construction are left out.
     """
-    return [row for row in validated_points if row.point.role not in UNTESTED_ROLES and not row.has_passed]
+    return [
+        row
+        for row in validated_points
+        if row.published_point.role not in UNTESTED_ROLES and not row.has_passed
+    ]
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,7 +152,7 @@ class PublishedPointCounts:
     guessed        : {role: number of points with a trivial guess}
     nearer         : {role: number of points to which the law is nearer than the guess}
     contradictions : ids of claims that the equations of the same paper contradict
-    missed         : ids of points outside their tolerance, see `missed_points`
+    missed         : ids of points outside their tolerance, see `select_missed_points`
     """
 
     numbers: int
@@ -154,36 +168,38 @@ class PublishedPointCounts:
 
 def count_points(validated_points: Sequence[ValidatedPoint]) -> PublishedPointCounts:
     """Count the compared points by role and verdict."""
-    numbers = [row.point for row in validated_points if row.point.role != "claim"]
+    numbers = [row.published_point for row in validated_points if row.published_point.role != "claim"]
     printed = sum(point.printed for point in numbers)
     guessed = [row for row in validated_points if row.nearer_estimate]
 
-    def roles(validated_points: Sequence[ValidatedPoint]) -> dict[str, int]:
+    def count_roles(validated_points: Sequence[ValidatedPoint]) -> dict[str, int]:
         """Number of points of each role."""
-        found = Counter(row.point.role for row in validated_points)
-        return {role: found[role] for role in ROLES}
+        found = Counter(row.published_point.role for row in validated_points)
+        return {role: found[role] for role in POINT_ROLES}
 
     return PublishedPointCounts(
         numbers=len(numbers),
         printed=printed,
         derived=len(numbers) - printed,
-        roles=roles(validated_points),
-        met=roles([row for row in validated_points if row.has_passed]),
-        guessed=roles(guessed),
-        nearer=roles([row for row in guessed if row.nearer_estimate == "law"]),
-        contradictions=[row.point.id for row in validated_points if row.point.text is not None],
-        missed=[row.point.id for row in missed_points(validated_points)],
+        roles=count_roles(validated_points),
+        met=count_roles([row for row in validated_points if row.has_passed]),
+        guessed=count_roles(guessed),
+        nearer=count_roles([row for row in guessed if row.nearer_estimate == "law"]),
+        contradictions=[
+            row.published_point.id for row in validated_points if row.published_point.text is not None
+        ],
+        missed=[row.published_point.id for row in select_missed_points(validated_points)],
     )
 
 
-def format_table(validated_points: Sequence[ValidatedPoint]) -> str:
+def format_validation_table(validated_points: Sequence[ValidatedPoint]) -> str:
     """Format the comparison of published with computed numbers as a table in text."""
-    return "\n".join(align_columns([_TABLE_HEADINGS, *map(_format_cells, validated_points)]))
+    return "\n".join(align_columns([_TABLE_HEADINGS, *map(_format_table_row, validated_points)]))
 
 
-def _format_cells(validated_point: ValidatedPoint) -> tuple[str, ...]:
+def _format_table_row(validated_point: ValidatedPoint) -> tuple[str, ...]:
     """Format the cells of the table for one published point."""
-    p = validated_point.point
+    p = validated_point.published_point
     if isinstance(p.value, bool):
         shown = (format_claim(validated_point), str(validated_point.computed_value).lower(), "-", "-")
         source = "text"
@@ -196,9 +212,9 @@ def _format_cells(validated_point: ValidatedPoint) -> tuple[str, ...]:
         )
         source = "printed" if p.printed else "derived"
     guess = ("-", "-", "-")
-    if validated_point.guess is not None and validated_point.guess_error is not None:
+    if validated_point.trivial_guess is not None and validated_point.guess_error is not None:
         guess = (
-            f"{validated_point.guess:.6g}",
+            f"{validated_point.trivial_guess:.6g}",
             format_error(p, validated_point.guess_error),
             validated_point.nearer_estimate,
         )
@@ -219,19 +235,22 @@ def format_error(published_point: PublishedPoint, error: float) -> str:
 
     The unit is used if the tolerance is absolute.
     """
-    scale, unit = _error_scale(published_point)
+    scale, unit = _choose_error_scale_and_unit(published_point)
     small = abs(error) <= _MAX_ROUNDING_OVER_TOLERANCE * published_point.tolerance
     return ("0" if small else f"{scale * error:+.3g}") + unit
 
 
 def format_tolerance(published_point: PublishedPoint) -> str:
-    """Format the tolerance of a published point, in the unit of `format_error`."""
-    scale, unit = _error_scale(published_point)
+    """Format the tolerance of a published point: in per cent, or in the unit of the point."""
+    scale, unit = _choose_error_scale_and_unit(published_point)
     return f"{scale * published_point.tolerance:.3g}{unit}"
 
 
-def _error_scale(published_point: PublishedPoint) -> tuple[float, str]:
-    """Factor and unit text of errors and tolerances; percentage points for a number in per cent."""
+def _choose_error_scale_and_unit(published_point: PublishedPoint) -> tuple[float, str]:
+    """Factor and unit text with which errors and tolerances are printed.
+
+    If the published number is in per cent and its tolerance is absolute, the unit is percentage points.
+    """
     if not published_point.absolute:
         return 100.0, " %"
     return 1.0, {"%": " points", "1": ""}.get(published_point.unit, f" {published_point.unit}")
@@ -239,11 +258,11 @@ def _error_scale(published_point: PublishedPoint) -> tuple[float, str]:
 
 def format_claim(validated_point: ValidatedPoint) -> str:
     """Format whether a claim holds; if the paper's equations contradict its text, also what it states."""
-    p = validated_point.point
+    p = validated_point.published_point
     return str(p.value).lower() + ("" if p.text is None else f" (text: {str(p.text).lower()})")
 
 
-def format_summary(validated_points: Sequence[ValidatedPoint]) -> str:
+def format_validation_summary(validated_points: Sequence[ValidatedPoint]) -> str:
     """Summary of the comparison in one line.
 
     The line counts the points of each role, the points to which the law is nearer than a trivial guess, and

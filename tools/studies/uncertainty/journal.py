@@ -30,13 +30,13 @@ LOCKED_BYTE_POSITION = 1 << 40
 """Position of the locked byte in the file of runs [byte], beyond all runs."""
 
 
-def sha256_text(content: bytes) -> str:
+def sha256_hex(hashed_bytes: bytes) -> str:
     """SHA-256 digest of bytes, as hexadecimal text."""
-    return hashlib.sha256(content).hexdigest()
+    return hashlib.sha256(hashed_bytes).hexdigest()
 
 
-def claim_folder(study_folder: Path, study_record: Mapping[str, object]) -> None:
-    """Write a study into its folder, or check that the folder already holds this study.
+def claim_study_folder(study_folder: Path, study_record: Mapping[str, object]) -> None:
+    """Write the record of a study into its folder, or check that the folder already holds this study.
 
     Raises ValueError if the folder holds another study (the message names a difference) or other files.
     """
@@ -67,13 +67,13 @@ def claim_folder(study_folder: Path, study_record: Mapping[str, object]) -> None
 
 @contextmanager
 def open_claimed_folder(study_folder: Path, study_record: Mapping[str, object]) -> Iterator[None]:
-    """Context manager that claims the folder of a study, see `claim_folder`.
+    """Context manager that claims the folder of a study, see `claim_study_folder`.
 
     If the context raises ValueError before a run is finished, a new folder is removed again.
     """
     new = not (study_folder / STUDY_FILE).exists()
     with ensure_folder(study_folder):
-        claim_folder(study_folder, study_record)
+        claim_study_folder(study_folder, study_record)
         try:
             yield
         except ValueError:
@@ -84,7 +84,7 @@ def open_claimed_folder(study_folder: Path, study_record: Mapping[str, object]) 
             raise
 
 
-class Journal:
+class RunJournal:
     """File of finished runs of a study, open for appending and locked by this process.
 
     run_count     : number of runs of the study
@@ -96,14 +96,14 @@ class Journal:
     no run of the study.
     """
 
-    def __init__(self, folder: Path, run_count: int, file_name: str = RUNS_FILE) -> None:
+    def __init__(self, study_folder: Path, run_count: int, journal_file_name: str = RUNS_FILE) -> None:
         self.run_count = run_count
-        self.path = folder / file_name
+        self.path = study_folder / journal_file_name
         self.finished_runs: set[int] = set()
         self.failed_count = 0
         self.first_failure: dict[str, object] | None = None
 
-    def __enter__(self) -> "Journal":
+    def __enter__(self) -> "RunJournal":
         check_regular_file(self.path, "the journal of a study")
         self.file = self.path.open("ab")
         try:
@@ -115,12 +115,12 @@ class Journal:
             ) from None
         end = 0
         try:
-            for row, (entry, end) in enumerate(_read_lines(self.path), 1):  # noqa: B007
+            for row, (entry, end) in enumerate(_read_journal_lines(self.path), 1):  # noqa: B007
                 if entry["run"] >= self.run_count:
-                    raise _row_error(
+                    raise _make_row_error(
                         self.path, row, f"the study has {self.run_count} runs, no run {entry['run']}"
                     )
-                self._count_entry(entry)
+                self._count_finished_run(entry)
             self.file.truncate(end)
         except BaseException:
             self.file.close()
@@ -128,7 +128,7 @@ class Journal:
         return self
 
     def __exit__(
-        self, error_type: type[BaseException] | None, error: object, trace: TracebackType | None
+        self, error_type: type[BaseException] | None, error: object, traceback: TracebackType | None
     ) -> None:
         self.file.close()
 
@@ -137,11 +137,11 @@ class Journal:
         for entry in entries:
             if entry["run"] not in self.finished_runs:
                 self.file.write(json.dumps(entry, default=np.ndarray.tolist).encode() + b"\n")
-                self._count_entry(entry)
+                self._count_finished_run(entry)
         self.file.flush()
         os.fsync(self.file.fileno())
 
-    def _count_entry(self, journal_entry: Mapping[str, Any]) -> None:
+    def _count_finished_run(self, journal_entry: Mapping[str, Any]) -> None:
         """Update the counts and the first failure with an entry."""
         self.finished_runs.add(int(journal_entry["run"]))
         if "error" in journal_entry:
@@ -149,25 +149,25 @@ class Journal:
             self.first_failure = self.first_failure or dict(journal_entry)
 
 
-def read_entries(study_folder: Path, file_name: str = RUNS_FILE) -> Iterator[dict[str, Any]]:
+def read_journal_entries(study_folder: Path, journal_file_name: str = RUNS_FILE) -> Iterator[dict[str, Any]]:
     """Entries of all finished runs of a folder. Raises ValueError, one line, for a row that is not a run."""
-    return (entry for entry, _ in _read_lines(study_folder / file_name))
+    return (entry for entry, _ in _read_journal_lines(study_folder / journal_file_name))
 
 
-def _read_lines(path: Path) -> Iterator[tuple[dict[str, Any], int]]:
+def _read_journal_lines(journal_path: Path) -> Iterator[tuple[dict[str, Any], int]]:
     """Yield (entry, position of its end in the file [byte]) of each complete line.
 
     Raises ValueError, one line, for a row that is not a run, a repeated run, or columns of another length.
     """
     end, rows, shape = 0, dict[int, int](), dict[str, int]()
-    check_regular_file(path, "the journal of a study")
-    with path.open("rb") as file:
+    check_regular_file(journal_path, "the journal of a study")
+    with journal_path.open("rb") as file:
         for row, line in enumerate(file, 1):
             if not line.endswith(b"\n"):
                 return
             try:
                 entry = json.loads(line.decode())
-                _check_entry(entry)
+                _check_journal_entry(entry)
                 if (first_row := rows.setdefault(entry["run"], row)) != row:
                     raise ValueError(f"run {entry['run']} is already in row {first_row}")
                 if lengths := {name: len(values) for name, values in entry.get("columns", {}).items()}:
@@ -175,79 +175,82 @@ def _read_lines(path: Path) -> Iterator[tuple[dict[str, Any], int]]:
                     if lengths != shape:
                         raise ValueError("its columns are not those of the other runs")
             except (ValueError, RecursionError) as error:
-                raise _row_error(path, row, str(error)) from None
+                raise _make_row_error(journal_path, row, str(error)) from None
             end += len(line)
             yield entry, end
 
 
-def _row_error(path: Path, row_text: int, reason: str) -> ValueError:
+def _make_row_error(journal_path: Path, row_number: int, error_reason: str) -> ValueError:
     """Error for a row of the file of runs that is not a run of the study."""
     return ValueError(
-        f"{path}: row {row_text}: {replace_unprintable(reason)[:200]}; expected a run as the command wrote "
-        "it: delete "
-        "the row, and the same command repeats its run"
+        f"{journal_path}: row {row_number}: {replace_unprintable(error_reason)[:200]}; expected a run as the "
+        "command wrote it: delete the row, and the same command repeats its run"
     )
 
 
-def _check_entry(journal_entry: object) -> None:
+def _check_journal_entry(journal_entry: object) -> None:
     """Raise ValueError if a JSON value is no journal entry of a run."""
     if not isinstance(journal_entry, dict):
         raise ValueError("is not a JSON object")
     run, parameters = journal_entry.get("run"), journal_entry.get("parameters")
     if type(run) is not int or run < 0:
-        raise ValueError(f"run = {_format_value(run)} is not an index")
+        raise ValueError(f"run = {_format_json_value(run)} is not the number of a run, 0, 1, 2, ...")
     if not isinstance(parameters, dict):
-        raise ValueError(f"parameters = {_format_value(parameters)} is not a JSON object")
+        raise ValueError(f"parameters = {_format_json_value(parameters)} is not a JSON object")
     for name, value in parameters.items():
         check_text("a name in parameters", name)
         if isinstance(value, str):
             check_text(f"parameter {name}", value)
-        elif type(value) is not bool and not _is_number(value):
+        elif type(value) is not bool and not _is_finite_number(value):
             raise ValueError(
-                f"parameter {name} = {_format_value(value)} is not a finite number, word, true or false"
+                f"parameter {name} = {_format_json_value(value)} is not a finite number, word, true or false"
             )
     if ("columns" in journal_entry) == ("error" in journal_entry):
-        raise ValueError("has not one of columns and error")
+        raise ValueError("has both columns and error, or neither")
     if "error" in journal_entry:
         if not isinstance(journal_entry["error"], str):
-            raise ValueError(f"error = {_format_value(journal_entry['error'])} is not a text")
+            raise ValueError(f"error = {_format_json_value(journal_entry['error'])} is not a text")
         check_text("error", journal_entry["error"])
         return
     columns = journal_entry["columns"]
     if not isinstance(columns, dict) or not columns:
-        raise ValueError(f"columns = {_format_value(columns)} is not a JSON object with lists of numbers")
+        raise ValueError(
+            f"columns = {_format_json_value(columns)} is not a JSON object with lists of numbers"
+        )
     lengths = set()
     for name, values in columns.items():
         check_text("a name in columns", name)
         if not isinstance(values, list):
-            raise ValueError(f"column {name} = {_format_value(values)} is not a list")
-        if wrong := [value for value in values if not _is_number(value)]:
-            raise ValueError(f"column {name} has {_format_value(wrong[0])}, which is not a finite number")
+            raise ValueError(f"column {name} = {_format_json_value(values)} is not a list")
+        if wrong := [value for value in values if not _is_finite_number(value)]:
+            raise ValueError(
+                f"column {name} has {_format_json_value(wrong[0])}, which is not a finite number"
+            )
         lengths.add(len(values))
     if len(lengths) > 1 or 0 in lengths:
-        raise ValueError(f"its columns have {' and '.join(map(str, sorted(lengths)))} values")
+        raise ValueError(f"its columns differ in length: {' and '.join(map(str, sorted(lengths)))} values")
 
 
-def _is_number(value: object) -> bool:
+def _is_finite_number(json_value: object) -> bool:
     """Whether a JSON value is a finite number (no boolean)."""
-    return type(value) is int or (type(value) is float and isfinite(value))
+    return type(json_value) is int or (type(json_value) is float and isfinite(json_value))
 
 
-def _format_value(value: object) -> str:
+def _format_json_value(json_value: object) -> str:
     """Format a JSON value in at most 60 characters."""
-    return json.dumps(value)[:60]
+    return json.dumps(json_value)[:60]
 
 
-def _lock_file(handle: int) -> None:
+def _lock_file(file_descriptor: int) -> None:
     """Lock the file of runs for this process until it is closed; OSError if another process has locked it."""
     if sys.platform == "win32":
         import msvcrt
 
         os.lseek(
-            handle, LOCKED_BYTE_POSITION, os.SEEK_SET
+            file_descriptor, LOCKED_BYTE_POSITION, os.SEEK_SET
         )  # locked bytes cannot be read: lock a byte beyond all runs
-        msvcrt.locking(handle, msvcrt.LK_NBLCK, 1)
+        msvcrt.locking(file_descriptor, msvcrt.LK_NBLCK, 1)
     else:
         import fcntl
 
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        fcntl.flock(file_descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -14,20 +14,20 @@ EVALUATORS: dict[str, tuple[RampEvaluator, Path]] = {}
 """{key of a study: its evaluator, and its folder} on this worker."""
 
 
-def run_on_dask_worker(key: str, runs: Sequence[Run]) -> list[Entry]:
+def run_on_dask_worker(study_key: str, runs: Sequence[Run]) -> list[Entry]:
     """Execute some runs of a study on a dask worker; return their journal entries."""
-    evaluator, _ = EVALUATORS[key]
-    return [evaluator.run(index, settings) for index, settings in runs]
+    evaluator, _ = EVALUATORS[study_key]
+    return [evaluator.execute_run(index, settings) for index, settings in runs]
 
 
 class EvaluatorPlugin(WorkerPlugin):  # type: ignore[misc]
-    """Dask plugin that installs the evaluator of a study on every worker, and deletes its files at the end.
+    """Dask plugin that gives every worker what it needs for the runs of a study, and removes it at the end.
 
     Workers that start later receive it, too.
     """
 
-    def __init__(self, key: str, evaluator: RampEvaluator) -> None:
-        self.key, self.evaluator = key, evaluator
+    def __init__(self, study_key: str, run_evaluator: RampEvaluator) -> None:
+        self.key, self.evaluator = study_key, run_evaluator
 
     def setup(self, worker: Any) -> None:
         parent = Path(worker.local_directory)

@@ -47,7 +47,7 @@ class UncertainParameter:
     """Uncertain parameter: name and distribution.
 
     distribution_text : text of the distribution, as the user wrote it
-    distribution : frozen distribution of scipy.stats
+    distribution      : frozen distribution of scipy.stats
     """
 
     name: str
@@ -55,24 +55,24 @@ class UncertainParameter:
     distribution: Any
 
     @property
-    def support(self) -> tuple[float, float]:
+    def support_interval(self) -> tuple[float, float]:
         """Lower and upper end of the values that the distribution allows."""
         low, high = self.distribution.support()
         return float(low), float(high)
 
 
 def parse_distribution(
-    parameter_name: str, distribution_text: str, file_value: float | None
+    parameter_name: str, distribution_text: str, parameter_file_value: float | None
 ) -> UncertainParameter | None:
     """Parse the text of a distribution; None if the text is a plain value or word.
 
-    file_value : value of the parameter file, to which a percentage without a value refers; None if there is
-        none
+    parameter_file_value : value of the parameter in its file, to which a percentage without a value refers;
+        None if the file has no value
 
     Raises ValueError that names the parameter, the text and the allowed forms.
     """
     try:
-        law = _parse_distribution(distribution_text.strip(), file_value)
+        law = _parse_scipy_distribution(distribution_text.strip(), parameter_file_value)
     except ValueError as error:
         raise ValueError(
             f"{parameter_name} = {distribution_text}: {error or 'is not a distribution'}; "
@@ -81,51 +81,51 @@ def parse_distribution(
     return law and UncertainParameter(parameter_name, distribution_text, law)
 
 
-def _parse_distribution(distribution_text: str, file_value: float | None) -> Any:
+def _parse_scipy_distribution(distribution_text: str, parameter_file_value: float | None) -> Any:
     """Parse a distribution of scipy.stats; None if the text is a plain value or word."""
     if ".." in distribution_text:
-        return _uniform(*_parse_numbers(distribution_text.split(".."), 2))
+        return _make_uniform_distribution(*_parse_numbers(distribution_text.split(".."), 2))
     if "+-" in distribution_text:
         middle, _, spread = distribution_text.partition("+-")
-        m = _parse_number(middle) if middle.strip() else _require_file_value(file_value)
+        m = _parse_number(middle) if middle.strip() else _require_file_value(parameter_file_value)
         half_width = abs(m) * _parse_percent(spread) if _is_percent(spread) else _parse_number(spread)
-        return _uniform(m - half_width, m + half_width)
+        return _make_uniform_distribution(m - half_width, m + half_width)
     if call := _DISTRIBUTION_CALL_PATTERN.fullmatch(distribution_text):
         if call[1] not in _DISTRIBUTION_PARSERS:
             raise ValueError(f"there is no distribution {call[1]!r}")
         return _DISTRIBUTION_PARSERS[call[1]](
-            [argument.strip() for argument in call[2].split(",")], file_value
+            [argument.strip() for argument in call[2].split(",")], parameter_file_value
         )
     return None
 
 
-def _uniform(lower_end: float, upper_end: float) -> object:
+def _make_uniform_distribution(lower_end: float, upper_end: float) -> object:
     """Uniform distribution of scipy.stats between two values."""
     _check_ascending(lower_end, upper_end)
     return stats.uniform(lower_end, upper_end - lower_end)
 
 
-def _loguniform(texts: list[str], file_value: float | None) -> object:
+def _parse_loguniform(argument_texts: list[str], parameter_file_value: float | None) -> object:
     """Log-uniform distribution of scipy.stats, from the texts of its two ends."""
-    low, high = _parse_numbers(texts, 2)
+    low, high = _parse_numbers(argument_texts, 2)
     if low <= 0.0:
         raise ValueError(f"low = {low:g} is outside (0, inf)")
     _check_ascending(low, high)
     return stats.loguniform(low, high)
 
 
-def _normal(texts: list[str], file_value: float | None) -> object:
+def _parse_normal(argument_texts: list[str], parameter_file_value: float | None) -> object:
     """Normal distribution of scipy.stats, from the texts of mean and standard deviation."""
-    mean, spread = _parse_centre_and_spread(texts, file_value)
+    mean, spread = _parse_centre_and_spread(argument_texts, parameter_file_value)
     sd = abs(mean) * _parse_percent(spread) if _is_percent(spread) else _parse_number(spread)
     if sd <= 0.0:
         raise ValueError(f"standard deviation = {sd:g} is outside (0, inf)")
     return stats.norm(mean, sd)
 
 
-def _lognormal(texts: list[str], file_value: float | None) -> object:
+def _parse_lognormal(argument_texts: list[str], parameter_file_value: float | None) -> object:
     """Lognormal distribution of scipy.stats, from the texts of median and factor."""
-    median, spread = _parse_centre_and_spread(texts, file_value)
+    median, spread = _parse_centre_and_spread(argument_texts, parameter_file_value)
     factor = 1.0 + _parse_percent(spread) if _is_percent(spread) else _parse_number(spread)
     if median <= 0.0:
         raise ValueError(f"median = {median:g} is outside (0, inf)")
@@ -134,9 +134,9 @@ def _lognormal(texts: list[str], file_value: float | None) -> object:
     return stats.lognorm(math.log(factor), scale=median)
 
 
-def _triangular(texts: list[str], file_value: float | None) -> object:
+def _parse_triangular(argument_texts: list[str], parameter_file_value: float | None) -> object:
     """Triangular distribution of scipy.stats, from the texts of its three values."""
-    low, mode, high = _parse_numbers(texts, 3)
+    low, mode, high = _parse_numbers(argument_texts, 3)
     _check_ascending(low, high)
     if not low <= mode <= high:
         raise ValueError(f"mode = {mode:g} is outside [{low:g}, {high:g}]")
@@ -144,25 +144,27 @@ def _triangular(texts: list[str], file_value: float | None) -> object:
 
 
 _DISTRIBUTION_PARSERS = {
-    "uniform": lambda parts, base: _uniform(*_parse_numbers(parts, 2)),
-    "loguniform": _loguniform,
-    "normal": _normal,
-    "lognormal": _lognormal,
-    "triangular": _triangular,
+    "uniform": lambda parts, base: _make_uniform_distribution(*_parse_numbers(parts, 2)),
+    "loguniform": _parse_loguniform,
+    "normal": _parse_normal,
+    "lognormal": _parse_lognormal,
+    "triangular": _parse_triangular,
 }
 """{name of a distribution: function that parses its arguments}."""
 
 
-def _parse_centre_and_spread(texts: list[str], file_value: float | None) -> tuple[float, str]:
+def _parse_centre_and_spread(
+    argument_texts: list[str], parameter_file_value: float | None
+) -> tuple[float, str]:
     """Centre and spread of a distribution, from one or two argument texts.
 
     A single text is a percentage; the centre is then the file's value. The spread is returned as text.
     """
-    if len(texts) == 1 and _is_percent(texts[0]):
-        return _require_file_value(file_value), texts[0]
-    if len(texts) != 2:
-        raise ValueError(f"has {len(texts)} numbers, expected 2")
-    return _parse_number(texts[0]), texts[1]
+    if len(argument_texts) == 1 and _is_percent(argument_texts[0]):
+        return _require_file_value(parameter_file_value), argument_texts[0]
+    if len(argument_texts) != 2:
+        raise ValueError(f"has {len(argument_texts)} numbers, expected 2")
+    return _parse_number(argument_texts[0]), argument_texts[1]
 
 
 def _check_ascending(lower_end: float, upper_end: float) -> None:
@@ -171,14 +173,14 @@ def _check_ascending(lower_end: float, upper_end: float) -> None:
         raise ValueError(f"low = {lower_end:g} is not below high = {upper_end:g}")
 
 
-def _parse_numbers(texts: list[str], number_count: int) -> list[float]:
-    """Parse `number_count` finite numbers from the texts of a distribution.
+def _parse_numbers(number_texts: list[str], expected_count: int) -> list[float]:
+    """Parse `expected_count` finite numbers from the texts of a distribution.
 
     Raises ValueError for another count or another text.
     """
-    if len(texts) != number_count:
-        raise ValueError(f"has {len(texts)} numbers, expected {number_count}")
-    return [_parse_number(text) for text in texts]
+    if len(number_texts) != expected_count:
+        raise ValueError(f"has {len(number_texts)} numbers, expected {expected_count}")
+    return [_parse_number(text) for text in number_texts]
 
 
 def _parse_number(number_text: str) -> float:
@@ -192,9 +194,9 @@ def _parse_number(number_text: str) -> float:
     return value
 
 
-def _is_percent(text: str) -> bool:
+def _is_percent(number_text: str) -> bool:
     """Whether a text ends with %."""
-    return text.strip().endswith("%")
+    return number_text.strip().endswith("%")
 
 
 def _parse_percent(percentage_text: str) -> float:
@@ -205,14 +207,14 @@ def _parse_percent(percentage_text: str) -> float:
     return value / 100.0
 
 
-def _require_file_value(file_value: float | None) -> float:
+def _require_file_value(parameter_file_value: float | None) -> float:
     """Value of the parameter file to which a percentage refers; ValueError if there is none."""
-    if file_value is None:
+    if parameter_file_value is None:
         raise ValueError("a percentage needs a value before it: VALUE+-PERCENT%")
-    return file_value
+    return parameter_file_value
 
 
-def is_relative(distribution_text: str) -> bool:
+def is_relative_distribution(distribution_text: str) -> bool:
     """Whether the text of a distribution is a percentage without a value, relative to another value."""
     distribution_text = distribution_text.strip()
     call = _DISTRIBUTION_CALL_PATTERN.fullmatch(distribution_text)
@@ -223,43 +225,49 @@ MAX_SAMPLES = 2**24
 """Largest number of samples of a study [1]."""
 
 
-def read_study(path: str | Path) -> dict[str, object]:
+def read_study(study_path: str | Path) -> dict[str, object]:
     """Read a study file: {name: number, true, false or text}.
 
     Raises ValueError with one line that names the file, the entry and the allowed values.
     """
-    path = Path(path)
-    document = read_document(path, "a study file")
+    study_path = Path(study_path)
+    document = read_document(study_path, "a study file")
     if unknown := set(document) - {"schema", "parameters"}:
-        raise ValueError(f"{path}: unknown entry {sorted(unknown)[0]!r}, allowed are schema, parameters")
+        raise ValueError(
+            f"{study_path}: unknown entry {sorted(unknown)[0]!r}, allowed are schema, parameters"
+        )
     table = document.get("parameters")
     if not isinstance(table, dict) or not table:
-        raise ValueError(f"{path}: parameters = {table!r}, expected a table of NAME = VALUE or DISTRIBUTION")
+        raise ValueError(
+            f"{study_path}: parameters = {table!r}, expected a table of NAME = VALUE or DISTRIBUTION"
+        )
     entries = dict(list_entries(table))
     for name, value in entries.items():
         if not isinstance(value, str | bool | int | float):
-            raise ValueError(f"{path}: {name} = {value!r}, expected a number or a text")
+            raise ValueError(f"{study_path}: {name} = {value!r}, expected a number or a text")
     return {name: float(value) if type(value) is int else value for name, value in entries.items()}
 
 
-def merge_settings(path: Path | None, stated_settings: Sequence[tuple[str, object]]) -> dict[str, object]:
+def merge_settings(
+    study_path: Path | None, stated_settings: Sequence[tuple[str, object]]
+) -> dict[str, object]:
     """Merge the settings {name: value} of a study file with stated settings, which take precedence."""
-    return (read_study(path) if path else {}) | dict(stated_settings)
+    return (read_study(study_path) if study_path else {}) | dict(stated_settings)
 
 
 def split_settings(
-    settings: Mapping[str, object], file_values: Mapping[str, object]
+    study_settings: Mapping[str, object], parameter_file_values: Mapping[str, object]
 ) -> tuple[dict[str, object], tuple[UncertainParameter, ...]]:
     """Split the settings of a study into plain values, {name: value}, and uncertain parameters.
 
-    file_values : {name: value} to which percentages refer
+    parameter_file_values : {name: value} to which percentages refer
 
     Raises ValueError for a wrong text of a distribution.
     """
     plain: dict[str, object] = {}
     uncertain = []
-    for name, value in settings.items():
-        centre = file_values.get(name)
+    for name, value in study_settings.items():
+        centre = parameter_file_values.get(name)
         centre = float(centre) if isinstance(centre, int | float) and not isinstance(centre, bool) else None
         parameter = parse_distribution(name, value, centre) if isinstance(value, str) else None
         if parameter is None:
@@ -269,14 +277,14 @@ def split_settings(
     return plain, tuple(uncertain)
 
 
-def round_up_to_power_of_two(samples: int) -> int:
+def round_up_to_power_of_two(sample_count: int) -> int:
     """Round a number of samples up to a power of two, for which a Sobol' sequence is balanced.
 
     Raises ValueError outside [2, MAX_SAMPLES].
     """
-    if not 2 <= samples <= MAX_SAMPLES:
-        raise ValueError(f"samples = {samples} is outside [2, {MAX_SAMPLES}]")
-    return int(2 ** math.ceil(math.log2(samples)))
+    if not 2 <= sample_count <= MAX_SAMPLES:
+        raise ValueError(f"samples = {sample_count} is outside [2, {MAX_SAMPLES}]")
+    return int(2 ** math.ceil(math.log2(sample_count)))
 
 
 def check_seed(seed: int) -> None:
@@ -285,9 +293,9 @@ def check_seed(seed: int) -> None:
         raise ValueError(f"seed = {seed} is outside [0, inf)")
 
 
-def unit_cube_points(point_count: int, dimensions: int, seed: int) -> Array:
+def draw_unit_cube_points(point_count: int, dimension_count: int, seed: int) -> Array:
     """Points (count, dimensions) of a scrambled Sobol' sequence in the open unit cube, count = 2^k."""
-    sequence = qmc.Sobol(dimensions, scramble=True, bits=64, seed=seed)
+    sequence = qmc.Sobol(dimension_count, scramble=True, bits=64, seed=seed)
     points = sequence.random_base2(int(math.log2(point_count)))
     return np.asarray(np.clip(points, 2.0**-40, 1.0 - 2.0**-40))
 
@@ -306,11 +314,11 @@ def draw_samples(
 class RefusedSamples:
     """Samples that the law refuses.
 
-    count                : number of refused samples
+    refused_count        : number of refused samples
     first_refused_sample : {name: value} of the first refused sample
-    reason               : error message of the law for this sample
+    refusal_message      : error message of the law for this sample
     """
 
-    count: int
+    refused_count: int
     first_refused_sample: Mapping[str, float]
-    reason: str
+    refusal_message: str

@@ -16,7 +16,7 @@ from jointfmu.quantity import Array
 
 CONFIDENCE_LEVEL = 0.95
 """Confidence level of the intervals [1]."""
-ORDERS_PER_DECADE = 10.0
+MAX_MODEL_ORDER_PER_DECADE = 10.0
 """Largest order of an autoregressive model over the decimal logarithm of the number of residuals [1]."""
 
 
@@ -26,7 +26,7 @@ def estimate_spectrum(residuals: Array) -> Array:
     Its mean is the variance; it is constant for independent residuals.
     """
     n = residuals.size
-    max_order = min(int(ORDERS_PER_DECADE * np.log10(n)), n // 4)
+    max_order = min(int(MAX_MODEL_ORDER_PER_DECADE * np.log10(n)), n // 4)
     autocovariance = np.fft.irfft(np.abs(np.fft.rfft(residuals, 2 * n)) ** 2)[: max_order + 1] / n
     autocovariance[0] = max(autocovariance[0], np.finfo(float).tiny) * (1.0 + 1e-12)
     models = []
@@ -42,7 +42,9 @@ def estimate_spectrum(residuals: Array) -> Array:
 
 
 def whiten_jacobian(jacobian: Array, residuals: Sequence[Array]) -> tuple[Array, float]:
-    """Reduced Jacobian (k, k) of independent residuals of variance 1 with the same covariance of parameters.
+    """Jacobian (k, k) of k independent residuals of variance 1 that gives the covariance of the parameters.
+
+    The covariance allows for residuals that are correlated in time.
 
     jacobian  : derivatives (n, k) [1] of all residuals, column after column
     residuals : residuals of each measured column [1], at the solution

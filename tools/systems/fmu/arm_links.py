@@ -16,10 +16,10 @@ from jointfmu.quantity import Array, CheckedParameters, Number, flatten_paramete
 from jointfmu.quantity.declaration import group_field
 
 from ..arm import Arm
-from ..multibody import GROUND, Frame, Link, Payload, TreeMotion, forward_dynamics, frame_motion
+from ..multibody import GROUND_INDEX, Frame, Link, Payload, TreeMotion, compute_frame_motion, forward_dynamics
 from .model import InputSource, SystemComponent
 
-_JOINT_AXES: Mapping[str, Array] = {
+_FRAME_AXES_BY_ROTATION_AXIS: Mapping[str, Array] = {
     "y": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]]),
     "z": np.eye(3),
 }
@@ -37,42 +37,42 @@ class ArmParameters(CheckedParameters):
 class ArmLinks:
     """Links of an arm as a model with states: angles from upright, then speeds.
 
-    arm   : arm as read from a system file
-    links : the same links with the frames of `multibody`
-    tip   : frame of the tip
+    arm        : arm as read from a system file
+    tree_links : the same links with the frames of `multibody`
+    tip_frame  : frame of the tip
     """
 
     arm: Arm
-    links: Sequence[Link] = field(init=False)
-    tip: Frame = field(init=False)
+    tree_links: Sequence[Link] = field(init=False)
+    tip_frame: Frame = field(init=False)
 
     def __post_init__(self) -> None:
         links, distance, parent_axes = list[Link](), 0.0, np.eye(3)
         for k, (name, axis, link) in enumerate(
             zip(self.arm.axis_names, self.arm.rotation_axes, self.arm.links, strict=True)
         ):
-            axes, along = _JOINT_AXES[axis], np.array([0.0, 0.0, 1.0])
+            axes, along = _FRAME_AXES_BY_ROTATION_AXIS[axis], np.array([0.0, 0.0, 1.0])
             links.append(
                 Link(
                     name=name,
-                    parent=k - 1 if k else GROUND,
-                    is_slide=False,
+                    parent_index=k - 1 if k else GROUND_INDEX,
+                    is_sliding_joint=False,
                     rotation=parent_axes.T @ axes,
                     origin=parent_axes.T @ (distance * along),
                     mass=link.mass,
-                    centre=axes.T @ (link.centre * along),
+                    centre_of_mass=axes.T @ (link.centre * along),
                     inertia=axes.T @ np.diag([link.J_across, link.J_across, link.J_along]) @ axes,
                 )
             )
             parent_axes, distance = axes, link.length
-        object.__setattr__(self, "links", links)
+        object.__setattr__(self, "tree_links", links)
         object.__setattr__(
-            self, "tip", Frame(len(links) - 1, parent_axes.T, parent_axes.T @ [0.0, 0.0, distance])
+            self, "tip_frame", Frame(len(links) - 1, parent_axes.T, parent_axes.T @ [0.0, 0.0, distance])
         )
 
     def make_component(self) -> SystemComponent:
-        """Component of the system; the torque of each drive acts on the link behind its axis."""
-        values = ArmParameters(payload=Payload.at_origin(0.0))
+        """Make one system component of all links of the arm; the torque of each drive acts on its link."""
+        values = ArmParameters(payload=Payload.make_point_mass(0.0))
         names = flatten_parameters(values)
         file = ParameterFile(
             "arm", "arm", values, dict.fromkeys(names, "derived"), dict.fromkeys(names, "section [arm]")
@@ -81,7 +81,7 @@ class ArmLinks:
         return SystemComponent("", self._make_model(), file, sources, {})
 
     def _make_model(self) -> Model:
-        """Model of the component."""
+        """FMU model of the coupled links: input torques; output angles, speeds, accelerations and tip."""
         names = [f"{name}_link" for name in self.arm.axis_names]
         inputs = [Variable(f"{name}.tau", "N.m", "torque of the drive on the link") for name in names]
         positions = [Variable(f"{name}.phi", "rad", "angle of the axis from upright", 0.1) for name in names]
@@ -110,42 +110,50 @@ class ArmLinks:
             is_time_dependent=True,
         )
 
-    def evaluate_outputs(self, parameters: Any, values: Mapping[str, Number]) -> dict[str, Number]:
+    def evaluate_outputs(self, parameters: Any, variable_values: Mapping[str, Number]) -> dict[str, Number]:
         """All outputs, for a parameter set and the values of inputs and states."""
-        outputs = dict(values)
+        outputs = dict(variable_values)
         accelerations = self._compute_motion(
-            parameters, values, self._list_values(values, "tau")
-        ).accelerations
+            parameters, variable_values, self._list_link_values(variable_values, "tau")
+        ).joint_accelerations
         for name, acceleration in zip(self.arm.axis_names, accelerations, strict=True):
             outputs[f"{name}_link.a"] = acceleration
-        positions, speeds = self._list_values(values, "phi"), self._list_values(values, "w")
-        position = frame_motion(self.links, self.tip, positions, speeds).position
+        positions, speeds = (
+            self._list_link_values(variable_values, "phi"),
+            self._list_link_values(variable_values, "w"),
+        )
+        position = compute_frame_motion(self.tree_links, self.tip_frame, positions, speeds).position
         return outputs | {f"tip.{x}": value for x, value in zip("xyz", position, strict=True)}
 
-    def evaluate_residuals(self, parameters: Any, values: Mapping[str, Number]) -> list[Number]:
-        """Torques [N.m] that the accelerations need, minus torques of the drives."""
-        free = [None] * len(self.links)
-        needed = self._compute_motion(parameters, values, free, self._list_values(values, "a")).forces
-        return [due - torque for due, torque in zip(needed, self._list_values(values, "tau"), strict=True)]
+    def evaluate_residuals(self, parameters: Any, variable_values: Mapping[str, Number]) -> list[Number]:
+        """Residuals [N.m] of the equations of motion, one per link: required torque minus drive torque."""
+        free = [None] * len(self.tree_links)
+        needed = self._compute_motion(
+            parameters, variable_values, free, self._list_link_values(variable_values, "a")
+        ).joint_forces
+        return [
+            due - torque
+            for due, torque in zip(needed, self._list_link_values(variable_values, "tau"), strict=True)
+        ]
 
     def _compute_motion(
         self,
-        parameters: Any,
-        values: Mapping[str, Number],
-        torques: Sequence[Number | None],
-        accelerations: Sequence[Number] | None = None,
+        arm_parameters: Any,
+        variable_values: Mapping[str, Number],
+        axis_torques: Sequence[Number | None],
+        prescribed_accelerations: Sequence[Number] | None = None,
     ) -> TreeMotion:
-        """Dynamics at the states in `values`, see `forward_dynamics`."""
+        """Accelerations and torques of the links at the angles and speeds in `variable_values`."""
         return forward_dynamics(
-            self.links,
+            self.tree_links,
             (0.0, 0.0, -GRAVITY),
-            self._list_values(values, "phi"),
-            self._list_values(values, "w"),
-            torques,
-            accelerations,
-            payload=parameters.payload.make_body(self.tip),
+            self._list_link_values(variable_values, "phi"),
+            self._list_link_values(variable_values, "w"),
+            axis_torques,
+            prescribed_accelerations,
+            payload=arm_parameters.payload.make_body(self.tip_frame),
         )
 
-    def _list_values(self, values: Mapping[str, Number], variable: str) -> list[Number]:
-        """Values of a variable of all links."""
-        return [values[f"{name}_link.{variable}"] for name in self.arm.axis_names]
+    def _list_link_values(self, variable_values: Mapping[str, Number], link_variable: str) -> list[Number]:
+        """Values of a variable that each link has, for example its angle; one value for each link."""
+        return [variable_values[f"{name}_link.{link_variable}"] for name in self.arm.axis_names]

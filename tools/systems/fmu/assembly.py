@@ -7,30 +7,32 @@ from jointfmu_fmu_src.partners import load_partner_parameters as partner_paramet
 from ..system import System
 from ..wiring import find_connections, find_model, find_signals
 from .arm_links import ArmLinks
-from .model import LAG_PARAMETERS, InputSource, SystemComponent, SystemModel
+from .model import FORCE_LAG_PARAMETERS, InputSource, SystemComponent, SystemModel
 
 MIN_COMMUNICATION_INTERVAL = 1e-3
 """Smallest communication step [s] of the default experiment.
 
 The implicit step of the system needs no smaller one."""
-ARM_TOLERANCE = 1e-6
+ARM_STEP_TOLERANCE = 1e-6
 """Tolerance of an arm [1]: its oscillations are slow beside the prescribed motion, which sets the scale."""
 
 
 def assemble_system(system: System) -> SystemModel:
     """Make the model of a system: components in the order of evaluation, with the source of each input.
 
-    The links of an arm are coupled: see `arm_links`.
+    All links of an arm are one component with coupled equations of motion.
 
-    Raises ValueError as `wiring.find_connections`, and for a system without a body.
+    Raises ValueError for invalid connections, and for a system without a body.
     """
     feeds: dict[str, dict[str, InputSource | None]] = {name: {} for name in system.components}
     for wire in find_signals(system):
-        feeds[wire.target_component][wire.input] = InputSource(wire.source_component, wire.output)
+        feeds[wire.target_component][wire.target_input] = InputSource(
+            wire.source_component, wire.source_output
+        )
     for first, second in find_connections(system):
         if first.is_joint and first.component and second.component is None:  # fixed to the ground
             zero_inputs = {
-                variable: None for m, variable in first.variables_by_member.items() if m != first.flow_member
+                variable: None for m, variable in first.variables_by_member.items() if m != first.force_member
             }
             feeds[first.component.name] |= zero_inputs
     components, replaced = [], set[str]()
@@ -42,21 +44,21 @@ def assemble_system(system: System) -> SystemModel:
             continue
         model = find_model(component)
         if model.state_count:
-            model = replace(model, fixed_parameters=LAG_PARAMETERS)
+            model = replace(model, fixed_parameters=FORCE_LAG_PARAMETERS)
         file = component.parameter_file or partner_parameters(component.model_name).with_values(
             component.parameters, "user", system.name
         )
         start = {v.name: file.start_value(v.name) for v in model.inputs} | component.constant_inputs
         components.append(SystemComponent(name, model, file, feeds[name], start))
-    if not any(component.model.state_count for component in components):
+    if not any(component.fmu_model.state_count for component in components):
         raise ValueError(
             f"{system.name}: no component is a body; one FMU of a system needs at least one body"
         )
     components.sort(
-        key=lambda component: (component.model.state_count > 0, not component.model.is_time_dependent)
+        key=lambda component: (component.fmu_model.state_count > 0, not component.fmu_model.is_time_dependent)
     )
-    interval = max(system.interval, MIN_COMMUNICATION_INTERVAL)
+    interval = max(system.output_interval, MIN_COMMUNICATION_INTERVAL)
     described = SystemModel(
-        system.name, system.description, components, system.stop_time, interval, system.interval
+        system.name, system.description, components, system.stop_time, interval, system.output_interval
     )
-    return replace(described, tolerance=ARM_TOLERANCE) if system.arm else described
+    return replace(described, step_tolerance=ARM_STEP_TOLERANCE) if system.arm else described

@@ -4,43 +4,45 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from jointfmu_fmu_src.archive import staging_folder, write_archive
-from jointfmu_fmu_src.joint_parts.data import EMPTY_TABLES, ParameterSplit
-from jointfmu_fmu_src.licence import licence_files
-from jointfmu_fmu_src.native.build import make_common_members
+from jointfmu_fmu_src.joint_parts.data import NO_DATA_TABLES, ParameterSplit
+from jointfmu_fmu_src.licence import read_licence_files
+from jointfmu_fmu_src.native.build import make_common_archive_members
 from jointfmu_fmu_src.native.compiled.compiler import ZIG_TARGETS, compile_libraries, select_source_files
-from jointfmu_fmu_src.native.data import make_fmu_data
+from jointfmu_fmu_src.native.data import make_fmu_data_struct
 from jointfmu_fmu_src.native.page import render_variables_page
 
 from jointfmu.files.outputs import ARCHIVE_FILE, check_outputs
 
-from ...run.host import is_needed_to_run
+from ...run.host import is_member_needed_to_run
 from .code import generate_sources
 from .model import SystemModel
 from .proof import make_proof_files
 
 
-def fmu_paths(title: str, out: Path, versions: Sequence[str] = ("2", "3")) -> list[Path]:
-    """Paths of the FMUs of a system below the folder `out`."""
-    return [out / f"fmi{version}" / f"{title}.fmu" for version in versions]
+def list_system_fmu_paths(
+    fmu_name: str, out_folder: Path, fmi_versions: Sequence[str] = ("2", "3")
+) -> list[Path]:
+    """Paths of the FMUs of a system below the folder `out_folder`."""
+    return [out_folder / f"fmi{version}" / f"{fmu_name}.fmu" for version in fmi_versions]
 
 
-def make_sources(system_model: SystemModel) -> tuple[dict[str, str], str]:
+def make_c_sources(system_model: SystemModel) -> tuple[dict[str, str], str]:
     """{file name: text} of all C sources of a system's FMU, with its data, and the instantiation token."""
-    model, files = system_model.make_model(), generate_sources(system_model)
-    parameters = system_model.make_parameters(model)
-    parameter_split = ParameterSplit((), {}, {}, model.parameter_class, EMPTY_TABLES)
-    data = make_fmu_data(model, parameters, parameter_split, files, has_parameter_file=False)
+    model, files = system_model.make_fmu_model(), generate_sources(system_model)
+    parameters = system_model.make_system_parameter_file(model)
+    parameter_split = ParameterSplit((), {}, {}, model.parameter_class, NO_DATA_TABLES)
+    data = make_fmu_data_struct(model, parameters, parameter_split, files, has_parameter_file=False)
     files |= {
-        "data.h": data.make_header(),
-        "data.c": data.make_source(f" from the system {system_model.name!r}"),
+        "data.h": data.make_c_header(),
+        "data.c": data.make_c_source(f" from the system {system_model.name!r}"),
     }
-    return files, data.token
+    return files, data.instantiation_token
 
 
-def build_system(
+def build_system_fmus(
     system_model: SystemModel,
-    out: Path,
-    versions: Sequence[str] = ("2", "3"),
+    out_folder: Path,
+    fmi_versions: Sequence[str] = ("2", "3"),
     platforms: Sequence[str] = tuple(ZIG_TARGETS),
     overwrite: bool = False,
 ) -> list[Path]:
@@ -48,33 +50,35 @@ def build_system(
 
     Equal content gives equal files.
 
-    versions  : versions of FMI, "2" and "3"
-    platforms : platforms of the binaries, names of FMI 3.0
-    overwrite : also replace files that jointfmu did not write
+    fmi_versions : versions of FMI, "2" and "3"
+    platforms    : platforms of the binaries, names of FMI 3.0
+    overwrite    : also replace files that jointfmu did not write
 
     Raises ImportError if a package is missing, RuntimeError if the compiler fails, ValueError if a folder
     cannot be written or the system is too large.
     """
-    model = system_model.make_model()
-    files_out = fmu_paths(model.title, out, versions)
+    model = system_model.make_fmu_model()
+    files_out = list_system_fmu_paths(model.title, out_folder, fmi_versions)
     check_outputs(files_out, ARCHIVE_FILE, overwrite)
-    parameters = system_model.make_parameters(model)
-    files, token = make_sources(system_model)
+    parameters = system_model.make_system_parameter_file(model)
+    files, token = make_c_sources(system_model)
     page = render_variables_page(model, parameters, Path(__file__).with_name("page.html")).encode()
-    documents = {"index.html": page, **licence_files()}
+    documents = {"index.html": page, **read_licence_files()}
     pages = {f"documentation/{path}": content for path, content in documents.items()}
     written_files, proof_files = [], None
-    for version, target in zip(versions, files_out, strict=True):
+    for version, target in zip(fmi_versions, files_out, strict=True):
         binaries = compile_libraries(
             model.name, files, select_source_files(sorted(files), version), platforms
         )
-        members = make_common_members(model, parameters, version, files, token, binaries) | pages
+        members = make_common_archive_members(model, parameters, version, files, token, binaries) | pages
         with staging_folder(target) as work:
             if proof_files is None:  # the first FMU computes the reference results of both
-                runnable = {path: content for path, content in members.items() if is_needed_to_run(path)}
+                runnable = {
+                    path: content for path, content in members.items() if is_member_needed_to_run(path)
+                }
                 write_archive(runnable, work / target.name)
                 proof_files = make_proof_files(
-                    model, system_model.stop_time, system_model.separate_interval, work / target.name
+                    model, system_model.stop_time, system_model.separate_fmu_step, work / target.name
                 )
             write_archive(members | proof_files, work / target.name)
         written_files.append(target)

@@ -11,7 +11,7 @@ from jointfmu.quantity.declaration import group_field
 
 SYSTEM_KIND = "system"
 """Value of `Model.joint` for the model of a system, which has no kind of joint."""
-LAG_PARAMETERS = ("lag_a", "lag_b")
+FORCE_LAG_PARAMETERS = ("lag_a", "lag_b")
 """Parameters of bodies that are needed only if joints and bodies are separate FMUs."""
 
 
@@ -34,17 +34,17 @@ class InputSource(NamedTuple):
 class SystemComponent:
     """Component of a system: load, joint or body.
 
-    name         : empty for a component whose variables have no prefix
-    model        : model of its FMU; that of a body lacks the parameters in LAG_PARAMETERS
-    sources      : {input: its source}; None: the input is zero. Inputs without an entry are inputs of the
+    name          : empty for a component whose variables have no prefix
+    fmu_model     : model of its FMU; that of a body lacks the parameters in FORCE_LAG_PARAMETERS
+    input_sources : {input: its source}; None: the input is zero. Inputs without an entry are inputs of the
         system
-    start_values : {input of the system: start value} if it is not zero
+    start_values  : {input of the system: start value} if it is not zero
     """
 
     name: str
-    model: Model
-    parameters: ParameterFile
-    sources: Mapping[str, InputSource | None]
+    fmu_model: Model
+    parameter_file: ParameterFile
+    input_sources: Mapping[str, InputSource | None]
     start_values: Mapping[str, float]
 
     def full_name(self, variable_name: str) -> str:
@@ -54,43 +54,43 @@ class SystemComponent:
     @property
     def system_inputs(self) -> list[Variable]:
         """Inputs of the component that no other component drives: they are inputs of the system's FMU."""
-        return [v for v in self.model.inputs if v.name not in self.sources]
+        return [v for v in self.fmu_model.inputs if v.name not in self.input_sources]
 
     @property
-    def body_count(self) -> int:
+    def degree_of_freedom_count(self) -> int:
         """Number of degrees of freedom of the component."""
-        return self.model.state_count // 2
+        return self.fmu_model.state_count // 2
 
     @property
-    def variable_parameters(self) -> list[str]:
+    def exposed_parameters(self) -> list[str]:
         """Names of the component's parameters that are FMU variables of the system."""
-        return [*self.model.parameter_fields()]
+        return [*self.fmu_model.parameter_fields()]
 
 
 @dataclass(frozen=True, slots=True)
 class SystemModel:
     """Model of a system, for one FMU: its components, and times of the default experiment.
 
-    components        : loads, then joints, then bodies: the inputs of each depend on components before it and
-        on states
-    stop_time         : stop time [s] of the default experiment
-    interval          : communication step [s] of the default experiment
-    separate_interval : communication step [s] that separate FMUs would need
-    tolerance         : tolerance of the speeds of an implicit step [1], if the host states none
+    components         : loads, then joints, then bodies, so that the inputs of a component depend only on
+        states and on components before it
+    stop_time          : stop time [s] of the default experiment
+    communication_step : communication step [s] of the default experiment
+    separate_fmu_step  : communication step [s] that separate FMUs would need
+    step_tolerance     : tolerance of the speeds of an implicit step [1], if the host states none
     """
 
     name: str
-    doc: str
+    description: str
     components: Sequence[SystemComponent]
     stop_time: float
-    interval: float
-    separate_interval: float
-    tolerance: float = 1e-5
+    communication_step: float
+    separate_fmu_step: float
+    step_tolerance: float = 1e-5
 
     @property
     def bodies(self) -> list[SystemComponent]:
         """Bodies of the system: components with states."""
-        return [component for component in self.components if component.model.state_count]
+        return [component for component in self.components if component.fmu_model.state_count]
 
     @property
     def inputs(self) -> list[tuple[SystemComponent, Variable]]:
@@ -107,27 +107,29 @@ class SystemModel:
             (component, v)
             for k in range(3)
             for component in self.bodies
-            for v in component.model.outputs[k * component.body_count : (k + 1) * component.body_count]
+            for v in component.fmu_model.outputs[
+                k * component.degree_of_freedom_count : (k + 1) * component.degree_of_freedom_count
+            ]
         ]
         return moving + [
             (component, v)
             for component in self.components
-            for v in component.model.outputs[3 * component.body_count :]
+            for v in component.fmu_model.outputs[3 * component.degree_of_freedom_count :]
         ]
 
-    def make_model(self) -> Model:
+    def make_fmu_model(self) -> Model:
         """Make the model of the FMU, whose variables are called COMPONENT.VARIABLE."""
-        sets = [part for p in self.components for part in _parameter_groups(p)]
+        sets = [part for p in self.components for part in _list_parameter_groups(p)]
         hidden = [
             p.full_name(name)
             for p in self.components
-            for name, _ in flatten_fields(type(p.parameters.values))
-            if name not in p.variable_parameters
+            for name, _ in flatten_fields(type(p.parameter_file.values))
+            if name not in p.exposed_parameters
         ]
         return Model(
             name=self.name,
             joint=SYSTEM_KIND,
-            doc=self.doc,
+            doc=self.description,
             parameter_class=make_dataclass(
                 "SystemParameters",
                 [(f"group{k}", cls, item) for k, (cls, item, _) in enumerate(sets)],
@@ -135,48 +137,52 @@ class SystemModel:
                 kw_only=True,
             ),
             tabulate=lambda values: values,
-            inputs=[with_component_name(component, v) for component, v in self.inputs],
-            outputs=[with_component_name(component, v) for component, v in self.outputs],
+            inputs=[prefix_component_name(component, v) for component, v in self.inputs],
+            outputs=[prefix_component_name(component, v) for component, v in self.outputs],
             evaluate=_raise_not_in_python,
             validity_limits=(),
-            ramp=LoadRamp("", self.stop_time, self.interval, self.interval),
+            ramp=LoadRamp("", self.stop_time, self.communication_step, self.communication_step),
             dependencies=self._find_dependencies(),
             fixed_parameters=hidden,
-            state_count=sum(p.model.state_count for p in self.components),
+            state_count=sum(p.fmu_model.state_count for p in self.components),
             is_time_dependent=True,
             initial_history=_raise_not_in_python
-            if any(p.model.initial_history for p in self.components)
+            if any(p.fmu_model.initial_history for p in self.components)
             else None,
-            advance=_raise_not_in_python if any(p.model.initial_history for p in self.components) else None,
+            advance=_raise_not_in_python
+            if any(p.fmu_model.initial_history for p in self.components)
+            else None,
         )
 
-    def make_parameters(self, model: Model) -> ParameterFile:
+    def make_system_parameter_file(self, system_fmu_model: Model) -> ParameterFile:
         """Make the parameter file of the system from the parameter files of all components."""
 
-        def collect(attribute: str) -> dict[str, Any]:
+        def collect_entries(mapping_name: str) -> dict[str, Any]:
             """{name in the system: entry} of a mapping of all parameter files, as values or sources."""
             return {
                 p.full_name(name): value
                 for p in self.components
-                for name, value in getattr(p.parameters, attribute).items()
+                for name, value in getattr(p.parameter_file, mapping_name).items()
             }
 
-        groups = [value for p in self.components for *_, value in _parameter_groups(p)]
-        values = model.parameter_class(**{f"group{k}": value for k, value in enumerate(groups)})
+        groups = [value for p in self.components for *_, value in _list_parameter_groups(p)]
+        values = system_fmu_model.parameter_class(**{f"group{k}": value for k, value in enumerate(groups)})
         starts = {p.full_name(v.name): p.start_values.get(v.name, v.start) for p, v in self.inputs}
-        return ParameterFile(SYSTEM_KIND, self.name, values, collect("origins"), collect("sources"), starts)
+        return ParameterFile(
+            SYSTEM_KIND, self.name, values, collect_entries("origins"), collect_entries("sources"), starts
+        )
 
     def _find_dependencies(self) -> dict[str, list[str]]:
         """{output: inputs of the system and states on which it depends}."""
         dependencies: dict[str, dict[str, None]] = {}
-        states = [(p, v) for p in self.bodies for v in p.model.outputs[: p.model.state_count]]
+        states = [(p, v) for p in self.bodies for v in p.fmu_model.outputs[: p.fmu_model.state_count]]
         for component, v in (*states, *self.inputs):
             dependencies[component.full_name(v.name)] = {component.full_name(v.name): None}
         for component in self.components:
-            for v in component.model.outputs[component.model.state_count :]:
+            for v in component.fmu_model.outputs[component.fmu_model.state_count :]:
                 sources: dict[str, None] = {}
-                for name in component.model.list_dependencies(v.name):
-                    feed = component.sources.get(name, InputSource(component.name, name))
+                for name in component.fmu_model.list_dependencies(v.name):
+                    feed = component.input_sources.get(name, InputSource(component.name, name))
                     if feed:
                         sources |= dependencies[full_name(*feed)]
                 dependencies[component.full_name(v.name)] = sources
@@ -184,26 +190,28 @@ class SystemModel:
         return {name: [*sources] for name, sources in dependencies.items() if name not in inputs}
 
 
-def _parameter_groups(component: SystemComponent) -> list[tuple[type, Any, Any]]:
+def _list_parameter_groups(component: SystemComponent) -> list[tuple[type, Any, Any]]:
     """List (class, field, value) of the groups of a component's parameters.
 
     The names are those in the system.
     """
-    values = component.parameters.values
+    values = component.parameter_file.values
     if component.name:
-        return [(type(values), group_field(component.model.doc, **{component.name: type(values)}), values)]
+        return [
+            (type(values), group_field(component.fmu_model.doc, **{component.name: type(values)}), values)
+        ]
     return [
-        (type(getattr(values, item.name)), _copy_group(item), getattr(values, item.name))
+        (type(getattr(values, item.name)), _copy_parameter_group(item), getattr(values, item.name))
         for item in fields(values)
     ]
 
 
-def _copy_group(group: Field[Any]) -> Any:
+def _copy_parameter_group(parameter_group: Field[Any]) -> Any:
     """New dataclass field for a group of parameters, for the class of another component."""
-    return group_field(group.metadata["doc"], **group.metadata["alternatives"])
+    return group_field(parameter_group.metadata["doc"], **parameter_group.metadata["alternatives"])
 
 
-def with_component_name(component: SystemComponent, variable: Variable) -> Variable:
+def prefix_component_name(component: SystemComponent, variable: Variable) -> Variable:
     """Copy of a variable with the name COMPONENT.VARIABLE."""
     return replace(
         variable,
@@ -214,4 +222,4 @@ def with_component_name(component: SystemComponent, variable: Variable) -> Varia
 
 def _raise_not_in_python(*arguments: object) -> Any:
     """Raise NotImplementedError: replaces the Python functions of a system's model, which exist only in C."""
-    raise NotImplementedError("a system is evaluated in C alone")
+    raise NotImplementedError("a system has no Python functions; run its FMU (fmi2 or fmi3)")

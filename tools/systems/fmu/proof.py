@@ -10,8 +10,8 @@ from xml.etree.ElementTree import Element, SubElement
 
 import numpy as np
 from jointfmu_fmu_src.proof import standard
-from jointfmu_fmu_src.proof.files import EXPERIMENT_TEXT_PATH, RelatedFile, proof_members
-from jointfmu_fmu_src.proof.series import TimeSeries, format_csv
+from jointfmu_fmu_src.proof.files import EXPERIMENT_TEXT_PATH, ManifestEntry, place_reference_files
+from jointfmu_fmu_src.proof.series import TimeSeries, format_time_series_csv
 from jointfmu_fmu_src.proof.standard import CO_SIMULATION, MODEL_EXCHANGE
 from jointfmu_fmu_src.xml_parts import serialize_xml
 
@@ -34,7 +34,7 @@ from there the motion is too sensitive to be compared.
 """
 MIN_OUTPUT_SCALE_OVER_NOMINAL = 1e-2
 """Smallest scale of an output's tolerance over the nominal value of the output [1]."""
-SHORT_STEP = 1e-3
+SHORT_COMMUNICATION_STEP = 1e-3
 """Short communication step [s]; at most a tenth of the stop time."""
 LONG_OVER_SHORT_STEP = 10
 """Long communication step over the short one [1]."""
@@ -42,9 +42,9 @@ STEPS_PER_INTERVAL = 3
 """Integrator steps of model exchange per interval of the system [1]; each is accepted as a load step."""
 MAX_INTEGRATOR_STEPS = 100_000
 """Largest number of integrator steps [1]; longer experiments are cut."""
-ROWS_PER_FILE = 200
+ROWS_PER_RESULT_FILE = 200
 """Approximate number of rows of a result file [1]."""
-JUMP_OVER_NEIGHBOUR_CHANGE = 10.0
+MIN_JUMP_OVER_NEIGHBOUR_CHANGE = 10.0
 """Criterion of a jump: change of an output in a fine step over its changes before and after [1].
 
 The change must also exceed OUTPUT_TOLERANCE. A stiffness jumps where the motion reverses.
@@ -53,7 +53,7 @@ JUMP_NEIGHBOUR_INTERVALS = 3
 """Number of intervals next to a jump [1] in which results are not compared.
 
 Correct steps find a reversal slightly earlier or later."""
-SIGNIFICANT_DIGITS = 7
+RESULT_SIGNIFICANT_DIGITS = 7
 """Significant digits of results [1]."""
 _PROOF_DESCRIPTION = """\
 The proof inside this FMU
@@ -78,19 +78,22 @@ not compared: a stiffness jumps where the motion reverses and friction sticks ag
 """Text in the FMU that explains its experiments."""
 
 
-def make_proof_files(model: Model, stop: float, interval: float, fmu: Path) -> dict[str, bytes]:
+def make_proof_files(
+    fmu_model: Model, stop_time: float, system_interval: float, fmu_path: Path
+) -> dict[str, bytes]:
     """Make the files with experiments and reference results of a system's FMU, {path: content}.
 
     If no experiment can be run, the result is one text that says so.
 
-    stop, interval : stop time and interval of the system's experiment [s]
-    fmu            : path of the FMU, with all files that are needed to run it
+    stop_time       : stop time of the system's experiment [s]
+    system_interval : communication step of the system's experiment with separate FMUs [s]
+    fmu_path        : FMU with all files that are needed to run it
     """
-    step = min(SHORT_STEP, stop / LONG_OVER_SHORT_STEP)
-    substeps = max(int(np.ceil(STEPS_PER_INTERVAL * step / interval - 1e-6)), 1)
+    step = min(SHORT_COMMUNICATION_STEP, stop_time / LONG_OVER_SHORT_STEP)
+    substeps = max(int(np.ceil(STEPS_PER_INTERVAL * step / system_interval - 1e-6)), 1)
     count = LONG_OVER_SHORT_STEP * max(
         min(
-            int(stop / (LONG_OVER_SHORT_STEP * step) + 1e-6),
+            int(stop_time / (LONG_OVER_SHORT_STEP * step) + 1e-6),
             MAX_INTEGRATOR_STEPS // (LONG_OVER_SHORT_STEP * substeps),
         ),
         1,
@@ -99,25 +102,27 @@ def make_proof_files(model: Model, stop: float, interval: float, fmu: Path) -> d
     try:
         times = fine * np.arange(count * substeps + 1)
         results, coarse_results = (
-            _simulate(model, fmu, times, tolerance)
+            _simulate_outputs(fmu_model, fmu_path, times, tolerance)
             for tolerance in (REFERENCE_SOLVER_TOLERANCE, DEFAULT_SOLVER_TOLERANCE)
         )
-        while (difference_row := _find_first_difference(model, results, coarse_results)) < results.time.size:
+        while (
+            difference_row := _find_first_differing_row(fmu_model, results, coarse_results)
+        ) < results.time.size:
             count = (difference_row - 1) // (LONG_OVER_SHORT_STEP * substeps) * LONG_OVER_SHORT_STEP
             if not count:
                 raise RuntimeError(
                     "its own experiment is too sensitive to the solver tolerance from the start"
                 )
-            results = _first_rows(results, count * substeps + 1)
+            results = _keep_first_rows(results, count * substeps + 1)
     except Exception as error:  # fmpy raises bare Exception
         return {
             EXPERIMENT_TEXT_PATH: f"There is no proof inside this FMU: where it was built {error}\n".encode()
         }
-    scales = _find_scales(model, results)
-    smooth = _is_smooth(results, scales)
-    short, long = (f"experiments/{model.title}_{n}_ref.csv" for n in (1, LONG_OVER_SHORT_STEP))
+    scales = _find_output_scales(fmu_model, results)
+    smooth = _find_smooth_rows(results, scales)
+    short, long = (f"experiments/{fmu_model.title}_{n}_ref.csv" for n in (1, LONG_OVER_SHORT_STEP))
     members = {
-        path: _result_file(results, smooth, n * substeps)
+        path: _format_result_file(results, smooth, n * substeps)
         for path, n in ((short, 1), (long, LONG_OVER_SHORT_STEP))
     }
     runs = {
@@ -125,25 +130,27 @@ def make_proof_files(model: Model, stop: float, interval: float, fmu: Path) -> d
         MODEL_EXCHANGE: [(fine, short)],
     }
     related = [
-        RelatedFile(
+        ManifestEntry(
             "../../documentation/index.html", "text/html", "requirement", "what the FMU takes and gives"
         ),
-        RelatedFile(f"../../{EXPERIMENT_TEXT_PATH}", "text/plain", "document", "experiments and tolerance"),
+        ManifestEntry(f"../../{EXPERIMENT_TEXT_PATH}", "text/plain", "document", "experiments and tolerance"),
         *(
-            RelatedFile(path, standard.CSV_TYPE, "result", "by model exchange at a tight tolerance")
+            ManifestEntry(path, standard.CSV_MIME_TYPE, "result", "by model exchange at a tight tolerance")
             for path in members
         ),
     ]
     for interface, steps in runs.items():
         path = f"{interface.replace(' ', '-')}.exp"
-        members[path] = _format_experiments(model, count * step, steps, scales)
+        members[path] = _format_experiments(fmu_model, count * step, steps, scales)
         labels = {interface: "steps of stepSize"}
         related.append(
-            RelatedFile(path, standard.EXPERIMENTS_TYPE, "experiment/validation", model.doc, labels)
+            ManifestEntry(
+                path, standard.EXPERIMENTS_MIME_TYPE, "experiment/validation", fmu_model.doc, labels
+            )
         )
     page = _PROOF_DESCRIPTION.format(
-        standard=standard.STANDARD_NAME,
-        version=standard.STANDARD_VERSION,
+        standard=standard.LAYERED_STANDARD_NAME,
+        version=standard.LAYERED_STANDARD_VERSION,
         own=__version__,
         short=step,
         long=LONG_OVER_SHORT_STEP * step,
@@ -153,109 +160,127 @@ def make_proof_files(model: Model, stop: float, interval: float, fmu: Path) -> d
         small=MIN_OUTPUT_SCALE_OVER_NOMINAL,
         near=STEPS_PER_INTERVAL * JUMP_NEIGHBOUR_INTERVALS * fine,
         end=count * step,
-        stop=stop,
+        stop=stop_time,
         host=DEFAULT_SOLVER_TOLERANCE,
     )
-    return proof_members(members, related, page)
+    return place_reference_files(members, related, page)
 
 
-def _find_scales(model: Model, results: TimeSeries) -> dict[str, float]:
-    """{output: scale for its tolerance}: largest absolute value, or a share of the nominal value."""
+def _find_output_scales(fmu_model: Model, simulation_results: TimeSeries) -> dict[str, float]:
+    """{output: scale of its tolerance}: largest absolute value, at least a fraction of the nominal value."""
     return {
-        v.name: max(float(np.abs(results.columns[v.name]).max()), MIN_OUTPUT_SCALE_OVER_NOMINAL * v.nominal)
-        for v in model.outputs
+        v.name: max(
+            float(np.abs(simulation_results.columns[v.name]).max()), MIN_OUTPUT_SCALE_OVER_NOMINAL * v.nominal
+        )
+        for v in fmu_model.outputs
     }
 
 
-def _find_first_difference(model: Model, fine_results: TimeSeries, coarse_results: TimeSeries) -> int:
-    """Index of the first row at which two results of the system differ by more than OUTPUT_TOLERANCE.
+def _find_first_differing_row(fmu_model: Model, fine_results: TimeSeries, coarse_results: TimeSeries) -> int:
+    """Index of the first row at which two simulations of a system differ by more than OUTPUT_TOLERANCE.
 
-    The result is the number of rows if there is no difference. Rows near jumps are not compared.
+    The index is the number of rows if they do not differ. Rows near jumps are not compared.
     """
-    scales, rows = _find_scales(model, fine_results), fine_results.time.size
+    scales, rows = _find_output_scales(fmu_model, fine_results), fine_results.time.size
     differs = [
         np.abs(column - coarse_results.columns[name][:rows]) > OUTPUT_TOLERANCE * scales[name]
         for name, column in fine_results.columns.items()
     ]
-    rows_differing = np.flatnonzero(np.any(differs, axis=0) & _is_smooth(fine_results, scales))
+    rows_differing = np.flatnonzero(np.any(differs, axis=0) & _find_smooth_rows(fine_results, scales))
     return int(rows_differing[0]) if rows_differing.size else rows
 
 
-def _first_rows(results: TimeSeries, row_count: int) -> TimeSeries:
+def _keep_first_rows(simulation_results: TimeSeries, row_count: int) -> TimeSeries:
     """First rows of a time series, as a new series."""
     return TimeSeries(
-        results.time[:row_count], {name: column[:row_count] for name, column in results.columns.items()}
+        simulation_results.time[:row_count],
+        {name: column[:row_count] for name, column in simulation_results.columns.items()},
     )
 
 
-def _simulate(model: Model, fmu: Path, times: np.ndarray, tolerance: float) -> TimeSeries:
+def _simulate_outputs(
+    fmu_model: Model, fmu_path: Path, output_times: np.ndarray, solver_tolerance: float
+) -> TimeSeries:
     """Simulate all outputs of a system's FMU at given times by model exchange.
 
     Raises RuntimeError with the reason of a failure.
     """
-    names, messages = [v.name for v in model.outputs], list[str]()
+    names, messages = [v.name for v in fmu_model.outputs], list[str]()
     if not exchange.has_cvode_solver():
         raise RuntimeError("fmpy has no solver for model exchange")
-    with unpack_fmu(fmu, model_exchange=True) as (folder, _):
+    with unpack_fmu(fmu_path, accepts_model_exchange=True) as (folder, _):
         task = ExperimentTask(
-            str(fmu),
+            str(fmu_path),
             folder,
             MODEL_EXCHANGE,
-            times=times.tolist(),
-            outputs=names,
+            communication_points=output_times.tolist(),
+            output_names=names,
             variable_kinds=dict.fromkeys(names, "real"),
-            tolerance=tolerance,
+            solver_tolerance=solver_tolerance,
         )
         try:
-            rows = exchange.run_fmpy_exchange(task, messages)
+            rows = exchange.run_fmpy_model_exchange(task, messages)
         except Exception as error:
-            raise RuntimeError(f"its own experiment failed: {messages[0] if messages else error}") from None
-    return TimeSeries(times, dict(zip(names, np.array(rows).T, strict=True)))
+            raise RuntimeError(f"its own experiment failed: {messages[-1] if messages else error}") from None
+    return TimeSeries(output_times, dict(zip(names, np.array(rows).T, strict=True)))
 
 
-def _is_smooth(results: TimeSeries, scales: Mapping[str, float]) -> np.ndarray:
+def _find_smooth_rows(simulation_results: TimeSeries, output_scales: Mapping[str, float]) -> np.ndarray:
     """Mask (n) of the rows of a result near which no output jumps."""
-    jumps = np.zeros(results.time.size - 1, dtype=bool)
-    for name, column in results.columns.items():
+    jumps = np.zeros(simulation_results.time.size - 1, dtype=bool)
+    for name, column in simulation_results.columns.items():
         change = np.abs(np.diff(column))
         neighbour_change = np.maximum(np.append(change[1:], 0.0), np.append(0.0, change[:-1]))
-        jumps |= (change > OUTPUT_TOLERANCE * scales[name]) & (
-            change > JUMP_OVER_NEIGHBOUR_CHANGE * neighbour_change
+        jumps |= (change > OUTPUT_TOLERANCE * output_scales[name]) & (
+            change > MIN_JUMP_OVER_NEIGHBOUR_CHANGE * neighbour_change
         )
     near = np.convolve(jumps, np.ones(2 * STEPS_PER_INTERVAL * JUMP_NEIGHBOUR_INTERVALS, dtype=int))[
         STEPS_PER_INTERVAL * JUMP_NEIGHBOUR_INTERVALS - 1 :
     ]
-    smooth = np.asarray(near[: results.time.size] == 0)
+    smooth = np.asarray(near[: simulation_results.time.size] == 0)
     smooth[0] = True  # at the start nothing has changed yet
     return smooth
 
 
-def _result_file(results: TimeSeries, is_smooth: np.ndarray, step: int) -> bytes:
-    """CSV file of results at the ends of communication steps of `step` fine steps, about ROWS_PER_FILE rows.
+def _format_result_file(
+    simulation_results: TimeSeries, smooth_rows: np.ndarray, fine_steps_per_row: int
+) -> bytes:
+    """CSV file of simulation results, reduced to about ROWS_PER_RESULT_FILE rows.
 
-    is_smooth : (n) whether a row is far from jumps; other rows are left out
+    smooth_rows        : mask (n) of the rows that are far from jumps; other rows are left out
+    fine_steps_per_row : number of solver steps in a communication step; only ends of communication steps are
+        rows of the file
     """
-    rows = step * np.flatnonzero(is_smooth[::step])
-    rows = rows[:: -(-rows.size // ROWS_PER_FILE)]
-    columns = {name: column[rows] for name, column in results.columns.items()}
-    times = np.array([float(f"{time:.12g}") for time in results.time[rows]])
-    return format_csv(TimeSeries(times, columns), SIGNIFICANT_DIGITS).encode()
+    rows = fine_steps_per_row * np.flatnonzero(smooth_rows[::fine_steps_per_row])
+    rows = rows[:: -(-rows.size // ROWS_PER_RESULT_FILE)]
+    columns = {name: column[rows] for name, column in simulation_results.columns.items()}
+    times = np.array([float(f"{time:.12g}") for time in simulation_results.time[rows]])
+    return format_time_series_csv(TimeSeries(times, columns), RESULT_SIGNIFICANT_DIGITS).encode()
 
 
 def _format_experiments(
-    model: Model, stop: float, step_files: list[tuple[float, str]], scales: Mapping[str, float]
+    fmu_model: Model,
+    stop_time: float,
+    step_size_and_file_pairs: list[tuple[float, str]],
+    output_scales: Mapping[str, float],
 ) -> bytes:
     """XML of the experiments with steps of given sizes [s], each with its reference file."""
-    root = Element("Experiments", name=f"{model.title}, its own experiment", description=model.doc)
-    for step, path in step_files:
+    root = Element("Experiments", name=f"{fmu_model.title}, its own experiment", description=fmu_model.doc)
+    for step, path in step_size_and_file_pairs:
         name = f"steps of {1e3 * step:g} ms"
         node = SubElement(
-            root, "Experiment", name=name, description=model.doc, tolerance=repr(OUTPUT_TOLERANCE)
+            root, "Experiment", name=name, description=fmu_model.doc, tolerance=repr(OUTPUT_TOLERANCE)
         )
-        times = {"startTime": 0.0, "stopTime": stop, "stepSize": step}
-        SubElement(node, standard.TRANSIENT_ELEMENT, {key: f"{value:.12g}" for key, value in times.items()})
+        times = {"startTime": 0.0, "stopTime": stop_time, "stepSize": step}
+        SubElement(
+            node,
+            standard.TRANSIENT_SIMULATION_ELEMENT,
+            {key: f"{value:.12g}" for key, value in times.items()},
+        )
         SubElement(node, "References", source=path)
-        annotation = SubElement(SubElement(node, "Annotations"), "Annotation", type=standard.SCALES_TYPE)
-        for output, scale in scales.items():
-            SubElement(annotation, "Scale", name=output, value=f"{scale:.{SIGNIFICANT_DIGITS}g}")
+        annotation = SubElement(
+            SubElement(node, "Annotations"), "Annotation", type=standard.OUTPUT_SCALES_ANNOTATION_TYPE
+        )
+        for output, scale in output_scales.items():
+            SubElement(annotation, "Scale", name=output, value=f"{scale:.{RESULT_SIGNIFICANT_DIGITS}g}")
     return serialize_xml(root)

@@ -15,16 +15,17 @@ _MAX_VARIANCE_OVER_SQUARED_HARDNESS = 0.2
 """Variance of the pressure over squared hardness [1] up to which the series of image sources is faster."""
 
 
-def contact_area_shares(
+def elastic_and_plastic_area_shares(
     pressure: Number, hardness: Number, pressure_standard_deviation: Number
 ) -> tuple[Number, Number]:
-    """Shares [1] of the nominal area in elastic and in plastic contact at pressures (...) [Pa].
+    """Shares [1] of the nominal area in elastic and in plastic contact at nominal pressures p (...) [Pa].
 
     hardness                    : [Pa], above the pressure
-    pressure_standard_deviation : E* slope/2 [Pa], of the local pressure with all wavelengths
+    pressure_standard_deviation : [Pa] of the local pressure, with the roughness of all wavelengths: contact
+        modulus E* times combined rms slope/2
 
     Without plastic contact the elastic share is erf(p/(sqrt(2) standard deviation)). The plastic share
-    carries the load that the elastic one does not.
+    carries the rest of the load.
     """
     x = np.minimum(pressure / hardness, 1.0)
     t = (pressure_standard_deviation / hardness) ** 2
@@ -37,13 +38,15 @@ def contact_area_shares(
     return elastic, np.maximum(x - load, 0.0)
 
 
-def _diffusion_mode_series(pressure_ratio: Number, variance_ratio: Number) -> tuple[Number, Number]:
-    """Share of the nominal area in elastic contact, and the load on it over hardness and area [1].
+def _diffusion_mode_series(
+    pressure_over_hardness: Number, variance_over_squared_hardness: Number
+) -> tuple[Number, Number]:
+    """Share of the nominal area A_0 in elastic contact, and its load divided by hardness times A_0 [1].
 
-    Sum of a series of diffusion modes of the pressure distribution.
+    Sum of a series of diffusion modes of the distribution of the local pressure.
 
-    pressure_ratio : pressure over hardness [1]
-    variance_ratio : variance over squared hardness [1]
+    pressure_over_hardness : nominal pressure divided by hardness [1]
+    variance_over_squared_hardness : variance of the local pressure divided by the squared hardness [1]
     """
     share: Number = 0.0
     load: Number = 0.0
@@ -51,27 +54,28 @@ def _diffusion_mode_series(pressure_ratio: Number, variance_ratio: Number) -> tu
         mode = (
             2.0
             / (n * np.pi)
-            * np.sin(n * np.pi * pressure_ratio)
-            * np.exp(-0.5 * (n * np.pi) ** 2 * variance_ratio)
+            * np.sin(n * np.pi * pressure_over_hardness)
+            * np.exp(-0.5 * (n * np.pi) ** 2 * variance_over_squared_hardness)
         )
         share = share + (1.0 - (-1.0) ** n) * mode
         load = load - (-1.0) ** n * mode
     return share, load
 
 
-def _image_source_series(pressure_ratio: Number, variance_ratio: Number) -> tuple[Number, Number]:
-    """Share of the nominal area in elastic contact, and the load on it over hardness and area [1].
+def _image_source_series(
+    pressure_over_hardness: Number, variance_over_squared_hardness: Number
+) -> tuple[Number, Number]:
+    """Share of the nominal area A_0 in elastic contact, and its load divided by hardness times A_0 [1].
 
-    Sum of a series of image sources of the pressure distribution.
-
-    Arguments as in `_diffusion_mode_series`; it converges faster for small variance.
+    Sum of a series of image sources of the distribution of the local pressure. Arguments and result as in
+    `_diffusion_mode_series`; this series converges faster for a small variance.
     """
-    spread = np.sqrt(2.0 * variance_ratio)
+    spread = np.sqrt(2.0 * variance_over_squared_hardness)
     share: Number = 0.0
     load: Number = 0.0
     for k in range(-2, 3):
         for sign in (1.0, -1.0):
-            start = 2.0 * k + sign * pressure_ratio
+            start = 2.0 * k + sign * pressure_over_hardness
             to_zero, to_hardness = (0.0 - start) / spread, (1.0 - start) / spread
             weight = 0.5 * (erf(to_hardness) - erf(to_zero))
             tails = spread / (2.0 * np.sqrt(np.pi)) * (np.exp(-(to_zero**2)) - np.exp(-(to_hardness**2)))
@@ -80,12 +84,15 @@ def _image_source_series(pressure_ratio: Number, variance_ratio: Number) -> tupl
     return share, load
 
 
-def bearing_curve_log_slope(area_share: Number) -> Number:
-    """Derivative [1] of ln(share) with respect to the approach over the rms height, for a Gaussian surface.
+def bearing_curve_log_slope(area_share_above_plane: Number) -> Number:
+    """Log-slope of the bearing curve of a Gaussian surface: d ln(area share)/d(approach/rms height) [1].
 
-    area_share : [1] part of the surface above a cutting plane (bearing curve, Abbott and Firestone 1933). The
-        derivative is phi(z)/Phi(-z). The contact area of a perfectly plastic surface follows this curve.
+    area_share_above_plane : [1] part of the surface above a plane at the height z times the rms height
+        (bearing curve, Abbott and Firestone 1933): Phi(-z). The log-slope is phi(z)/Phi(-z), with density phi
+        and distribution function Phi of the normal distribution.
+
+    The contact area of a perfectly plastic surface follows the bearing curve.
     """
-    inside = np.minimum(np.maximum(area_share, 1e-300), 1.0 - 1e-12)
+    inside = np.minimum(np.maximum(area_share_above_plane, 1e-300), 1.0 - 1e-12)
     z = -np.vectorize(NormalDist().inv_cdf, otypes=[float])(inside)
     return np.exp(-0.5 * z**2) / np.sqrt(2.0 * np.pi) / inside

@@ -16,7 +16,7 @@ from ..interface import HardnessLimitedLaw
 from ..powerlaw import PowerTerm, SpotDistribution
 from ..roughness import MAX_ROUGHNESS_HEIGHT
 from ..surface import ElasticConstants, contact_modulus, contact_shear_modulus
-from .persson import bearing_curve_log_slope, contact_area_shares
+from .persson import bearing_curve_log_slope, elastic_and_plastic_area_shares
 
 FEW_SPOTS_STIFFNESS_FACTOR = 0.3
 """Factor C [1] of the stiffness at small load, see `RoughnessLaw.spot_distribution`; fitted to boundary
@@ -36,7 +36,7 @@ _SIZE_EXPONENT = 0.25
 
 @dataclass(frozen=True, kw_only=True)
 class RoughSurfaces:
-    """Surface parameters of the law `roughness`."""
+    """Parameters of both rough surfaces together, for the law `roughness`: height, wavelength, slope."""
 
     h: float = quantity_field(
         "m",
@@ -56,7 +56,7 @@ class RoughSurfaces:
 
 @dataclass(frozen=True, kw_only=True)
 class RoughnessLaw(HardnessLimitedLaw, RoughSurfaces, CheckedParameters):
-    """Parameters of the interface law `roughness`."""
+    """Parameters of the interface law `roughness`: stiffness from the combined rms height of the surfaces."""
 
     side1: ElasticConstants = group_field("first body")
     side2: ElasticConstants = group_field("second body")
@@ -73,15 +73,18 @@ class RoughnessLaw(HardnessLimitedLaw, RoughSurfaces, CheckedParameters):
         return self.H
 
     def spot_distribution(self) -> SpotDistribution:
-        """Load, stiffness and energies of the area A_0, as powers of the pressure p; u is ln(p/p_1).
+        """Load, stiffness and energies of the nominal area A_0, as sums of powers of the pressure p.
 
-        load       : [N] p A_0
-        normal     : [N/m] p A_0/h (1/gamma + C x^(-hurst/(1 + hurst))), x = p A_0/(E* h longest_wave)
-        tangential : [N/m] rho times normal
+        load         : [N] p A_0
+        normal       : [N/m] stiffness p A_0/h (1/gamma + C x^(-hurst/(1 + hurst))), with
+            C = FEW_SPOTS_STIFFNESS_FACTOR, x = p A_0/(E* h longest_wave) and the contact modulus E*
+        tangential   : [N/m] stiffness, `shear_stiffness_ratio` times normal
         elastic_work : [J] gamma h p A_0, the energy of p ~ exp(approach/(gamma h))
         plastic_work : [J] 0: the surfaces have carried the load before
+
+        In place of a log-area, the argument is u = ln(p/p_1), with p_1 of `stiffness_onset_pressure`.
         """
-        p, A, rho = onset_pressure(self), self.A_0, self.shear_stiffness_ratio()
+        p, A, rho = stiffness_onset_pressure(self), self.A_0, self.shear_stiffness_ratio()
         many_spots = p * A / (self.gamma * self.h)
         few_spots = (
             FEW_SPOTS_STIFFNESS_FACTOR
@@ -115,7 +118,7 @@ class RoughnessLaw(HardnessLimitedLaw, RoughSurfaces, CheckedParameters):
     def real_area(self, pressure: Number) -> tuple[Number, Number]:
         """Real area (...) [m2] and its elastic fraction [1] at pressures (...) [Pa] (Persson 2001)."""
         deviation = 0.5 * contact_modulus(self.side1, self.side2) * self.slope
-        elastic, plastic = contact_area_shares(pressure, self.H, deviation)
+        elastic, plastic = elastic_and_plastic_area_shares(pressure, self.H, deviation)
         return self.A_0 * (elastic + plastic), elastic / (elastic + plastic)
 
     def find_range_violations(self, lowest_pressure: float, highest_pressure: float) -> list[str]:
@@ -139,9 +142,10 @@ class RoughnessLaw(HardnessLimitedLaw, RoughSurfaces, CheckedParameters):
         return messages
 
     def shear_stiffness_ratio(self) -> Number:
-        """Stiffness ratio rho = K_T/K_N = 4 G'/E* [1] without slip.
+        """Ratio rho = K_T/K_N [1] of tangential to normal stiffness without slip: 4 G'/E*.
 
-        For equal materials it is 2 (1 - nu)/(2 - nu) (Mindlin 1949).
+        G', E*: contact shear modulus and contact modulus. For equal materials with the Poisson ratio nu, rho
+        is 2 (1 - nu)/(2 - nu) (Mindlin 1949).
         """
         return 4.0 * contact_shear_modulus(self.side1, self.side2) / contact_modulus(self.side1, self.side2)
 
@@ -150,15 +154,15 @@ class RoughnessLaw(HardnessLimitedLaw, RoughSurfaces, CheckedParameters):
         return loss_factor(self.traction_ratio)
 
     def contact_quantities(self, largest_log_area: Number) -> dict[str, Number]:
-        """Contact quantities of the nominal area A_0 at the log-pressure u [1]; p = p_1 exp(u).
+        """Contact quantities of the nominal area A_0 at u = ln(p/p_1) [1]; p_1: `stiffness_onset_pressure`.
 
         F [N] load, approach [m]; K_N, K_T [N/m] stiffness for small motions, also on unloading of a plastic
         contact; K_loading [N/m] stiffness at first loading, when spots yield: elastic compliance plus that of
         the bearing curve, weighted by the share of the load on plastic spots; A_r [m2] real area;
-        elastic_fraction [1]; eta_n = 0 and eta_t [1] loss factors; friction_limit = mu F [N]; slip_length
-        s_0 = mu gamma h/rho [m] of the contact of many spots.
+        elastic_fraction of A_r [1]; eta_n = 0 and eta_t [1] loss factors; friction_limit = mu F [N];
+        slip_length s_0 = mu gamma h/rho [m] of the contact of many spots, rho: `shear_stiffness_ratio`.
         """
-        s, p = self.spot_distribution(), onset_pressure(self) * np.exp(largest_log_area)
+        s, p = self.spot_distribution(), stiffness_onset_pressure(self) * np.exp(largest_log_area)
         F, K_N = s.sum_over_spots("load", largest_log_area), s.sum_over_spots("normal", largest_log_area)
         A_r, elastic = self.real_area(p)
         flowing = np.minimum((1.0 - elastic) * A_r * self.H / F, 1.0)
@@ -178,35 +182,38 @@ class RoughnessLaw(HardnessLimitedLaw, RoughSurfaces, CheckedParameters):
         }
 
 
-def onset_pressure(law: RoughnessLaw) -> Number:
-    """Lowest pressure [Pa] at which the law is valid; below it the stiffness begins from 0.
+def stiffness_onset_pressure(law_parameters: RoughnessLaw) -> Number:
+    """Pressure p_1 [Pa] at which the stiffness begins; the law at a pressure p is evaluated at u = ln(p/p_1).
 
-    p_1 = STIFFNESS_ONSET_NORMALISED_LOAD E* h longest_wave/A_0, where u = ln(p/p_1) is 0.
+    p_1 = STIFFNESS_ONSET_NORMALISED_LOAD E* h longest_wave/A_0, with the contact modulus E*.
     """
     return (
         STIFFNESS_ONSET_NORMALISED_LOAD
-        * contact_modulus(law.side1, law.side2)
-        * law.h
-        * law.longest_wave
-        / law.A_0
+        * contact_modulus(law_parameters.side1, law_parameters.side2)
+        * law_parameters.h
+        * law_parameters.longest_wave
+        / law_parameters.A_0
     )
 
 
-def _make_power_term_for_sum(coefficient: Number, exponent: Number) -> PowerTerm:
-    """Load or stiffness of one spot, from its sum over all spots: coefficient exp(exponent u).
+def _make_power_term_for_sum(sum_coefficient: Number, sum_exponent: Number) -> PowerTerm:
+    """Term of one spot whose sum over all spots is a given power law: sum_coefficient exp(sum_exponent u).
 
-    Here u is the logarithm of the pressure; the spots are those of a formal size distribution.
+    u is ln(p/p_1). The law has no real spots; its size distribution, with the exponent _SIZE_EXPONENT, only
+    brings the law into the form of the others.
     """
-    return PowerTerm(coefficient * (exponent - _SIZE_EXPONENT), exponent)
+    return PowerTerm(sum_coefficient * (sum_exponent - _SIZE_EXPONENT), sum_exponent)
 
 
 def loss_factor(traction_ratio: Number) -> Number:
-    """Loss factor eta_t [1] of a shear cycle with the force amplitude T = x mu F: W/(2 pi U), U = T s/2.
+    """Loss factor eta_t [1] of a shear cycle of many spots at the traction ratio: W/(2 pi U).
 
-    x is the traction ratio, W the loss of a cycle and U the energy at its ends. With
-    p ~ exp(approach/(gamma h)) the spots slip one after the other: T = mu F (1 - exp(-s/s_0)). By Masing's
-    rule W = -4 mu F s_0 ((2 - x) ln(1 - x) + 2x), so eta_t = (4/pi) (2/x - 1 + 2/ln(1 - x)). Below x = 0.01,
-    where this form cancels, its power series 2x/(3 pi) + ... is used.
+    W is the loss of a cycle and U = T s/2 the energy at its ends, with the amplitudes T = x mu F of the
+    tangential force and s of the displacement; x is the traction ratio, mu F the friction limit. With
+    p ~ exp(approach/(gamma h)) the spots slip one after the other: T = mu F (1 - exp(-s/s_0)), with the slip
+    length s_0. By Masing's rule W = -4 mu F s_0 ((2 - x) ln(1 - x) + 2x), so
+    eta_t = (4/pi) (2/x - 1 + 2/ln(1 - x)). Below x = 0.01, where this form cancels, its power series
+    2x/(3 pi) + ... is used.
     """
     series = traction_ratio * (
         1.0 / 6.0
@@ -223,8 +230,24 @@ def loss_factor(traction_ratio: Number) -> Number:
     return 4.0 / np.pi * np.where(small, series, closed_form)
 
 
-def approach(law: RoughnessLaw, pressure: Number) -> Number:
-    """Approach [m] of the two bodies from zero pressure to a pressure p [Pa]: integral of dp/k."""
-    x = pressure * law.A_0 / (contact_modulus(law.side1, law.side2) * law.h * law.longest_wave)
-    bend = law.hurst / (1.0 + law.hurst)
-    return law.gamma * law.h / bend * np.log1p(x**bend / (law.gamma * FEW_SPOTS_STIFFNESS_FACTOR))
+def approach(law_parameters: RoughnessLaw, pressure: Number) -> Number:
+    """Approach [m] of the two bodies from zero pressure to a pressure p [Pa]: integral of dp/k.
+
+    k [N/m3]: stiffness per nominal area.
+    """
+    x = (
+        pressure
+        * law_parameters.A_0
+        / (
+            contact_modulus(law_parameters.side1, law_parameters.side2)
+            * law_parameters.h
+            * law_parameters.longest_wave
+        )
+    )
+    bend = law_parameters.hurst / (1.0 + law_parameters.hurst)
+    return (
+        law_parameters.gamma
+        * law_parameters.h
+        / bend
+        * np.log1p(x**bend / (law_parameters.gamma * FEW_SPOTS_STIFFNESS_FACTOR))
+    )

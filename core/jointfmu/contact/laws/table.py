@@ -29,16 +29,16 @@ from ..powerlaw import PowerTerm, SpotDistribution, exp_integral, integrate_gaus
 
 MAX_TABLE_POINTS = 32
 """Largest number of points of a table [1], limited by the compiled code of the FMUs."""
-MAX_ONSET_EXPONENT = 1.0
+MAX_STIFFNESS_EXPONENT_BELOW_FIRST_POINT = 1.0
 """Largest exponent n of K ~ p^n [1] below the first point, as for a contact of many spots. With a larger
 one, the approach from first contact to the first point would depend on the pressure of first contact."""
-ONSET_PRESSURE_OVER_FIRST_POINT = 1e-6
+ONSET_PRESSURE_OVER_FIRST_POINT_PRESSURE = 1e-6
 """Pressure at which the stiffness begins, over the pressure of the first point [1]."""
 MIN_TRACTION_OVER_FRICTION_LIMIT = 1e-7
 """Tangential force over friction limit [1] below which the loss factor is proportional to it (round-off)."""
 MAX_STIFFNESS_EXPONENT = 5.0
 """Largest exponent of K ~ p^n between two points [1]: contact of rough surfaces has up to about 1."""
-MIN_PRESSURE_RATIO_OF_NEIGHBOURS = 1.001
+MIN_PRESSURE_RATIO_OF_NEIGHBOURING_POINTS = 1.001
 """Smallest ratio of the pressures of neighbouring points [1]."""
 _MIN_SEGMENT_LENGTH = 1e-100
 """Smallest length of a spline segment in ln p [1], for segments that only fill up the data of an FMU."""
@@ -47,11 +47,11 @@ _SIZE_EXPONENT = 0.25
 
 
 class LogSpline(NamedTuple):
-    """Monotone spline of the log-stiffness y = ln(K/K_1) over the log-pressure u = ln(p/p_1).
+    """Monotone spline of the log-stiffness y = ln(K/K_1) as a function of the log-pressure u = ln(p/p_1).
 
-    At the first point of the table y = u = 0.
+    K_1 and p_1 are stiffness and pressure of the first point of the table, where y = u = 0.
 
-    u, y      : (n) values at the points [1]
+    u, y      : (n) values at the n points [1]
     exponents : (n) slopes dy/du = d(ln K)/d(ln p) at the points [1]
     """
 
@@ -59,42 +59,43 @@ class LogSpline(NamedTuple):
     y: Sequence[Number]
     exponents: Sequence[Number]
 
-    def evaluate(self, u: Number) -> tuple[Number, Number]:
+    def evaluate_log_stiffness(self, log_pressure: Number) -> tuple[Number, Number]:
         """Log-stiffness y and its slope dy/du at log-pressures u, extrapolated below and above the points."""
-        below = np.minimum(u, 0.0)
+        below = np.minimum(log_pressure, 0.0)
         y, slope = self.exponents[0] * below, self.exponents[0]
         for i in range(len(self.u) - 1):
             length = np.maximum(self.u[i + 1] - self.u[i], _MIN_SEGMENT_LENGTH)
             rise, first, last = self.y[i + 1] - self.y[i], self.exponents[i], self.exponents[i + 1]
             a = 3.0 * rise / length - 2.0 * first - last
             b = first + last - 2.0 * rise / length
-            t = np.minimum(np.maximum((u - self.u[i]) / length, 0.0), 1.0)
+            t = np.minimum(np.maximum((log_pressure - self.u[i]) / length, 0.0), 1.0)
             y = y + length * t * (first + t * (a + t * b))
             slope = slope + t * (2.0 * a + 3.0 * b * t)
-        return y, np.where(u < self.u[-1], slope, 0.0)
+        return y, np.where(log_pressure < self.u[-1], slope, 0.0)
 
 
-def monotone_spline(pressure: Array, stiffness: Array) -> LogSpline:
-    """Spline of the log-stiffness through points with pressures p (n) [Pa] and stiffnesses K (n) [Pa/m].
+def monotone_spline(point_pressures: Array, point_stiffnesses: Array) -> LogSpline:
+    """Spline of ln(stiffness) as a function of ln(pressure) through n points, with non-negative slopes.
 
-    The slopes are those of Fritsch and Butland (1984).
+    point_pressures, point_stiffnesses : (n) [Pa], [Pa/m] increasing
 
-    An inner slope is the weighted harmonic mean of the slopes of both chords, 0 if one of them is 0.
+    The slope at an inner point is that of Fritsch and Butland (1984): the weighted harmonic mean of the
+    slopes of both adjacent chords, 0 if one of them is 0.
     """
-    u, y = np.log(pressure / pressure[0]), np.log(stiffness / stiffness[0])
+    u, y = np.log(point_pressures / point_pressures[0]), np.log(point_stiffnesses / point_stiffnesses[0])
     length = np.diff(u)
     chord = np.diff(y) / length
     weight = 2.0 * length[1:] + length[:-1], length[1:] + 2.0 * length[:-1]
     both = np.minimum(chord[:-1], chord[1:]) > 0.0
     with np.errstate(divide="ignore", invalid="ignore"):
         mean = (weight[0] + weight[1]) / (weight[0] / chord[:-1] + weight[1] / chord[1:])
-    slopes = [min(chord[0], MAX_ONSET_EXPONENT), *np.where(both, mean, 0.0), chord[-1]]
+    slopes = [min(chord[0], MAX_STIFFNESS_EXPONENT_BELOW_FIRST_POINT), *np.where(both, mean, 0.0), chord[-1]]
     return LogSpline(u.tolist(), y.tolist(), [float(slope) for slope in slopes])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StiffnessTable:
-    """Measured or published points: normal stiffness per area over contact pressure.
+    """Measured or published points: normal stiffness per area as a function of the contact pressure.
 
     Raises ValueError if the points are too few or too many, or do not rise.
     """
@@ -116,10 +117,10 @@ class StiffnessTable:
             )
         for i in range(1, count):
             (p, q), (K, L) = self.pressure[i - 1 : i + 1], self.stiffness[i - 1 : i + 1]
-            if not q >= MIN_PRESSURE_RATIO_OF_NEIGHBOURS * p:
+            if not q >= MIN_PRESSURE_RATIO_OF_NEIGHBOURING_POINTS * p:
                 raise ValueError(
                     f"table.pressure[{i}] = {q:g} Pa follows {p:g} Pa; expected increasing pressures, each "
-                    f"at least {MIN_PRESSURE_RATIO_OF_NEIGHBOURS - 1.0:.1%} above the one before it"
+                    f"at least {MIN_PRESSURE_RATIO_OF_NEIGHBOURING_POINTS - 1.0:.1%} above the one before it"
                 )
             if not L >= K:
                 raise ValueError(
@@ -145,35 +146,39 @@ class StiffnessTable:
 
     @property
     def spline(self) -> LogSpline:
-        """Spline of the log-stiffness over the log-pressure through the points of the table."""
+        """Spline of the log-stiffness as a function of the log-pressure, through the points of the table."""
         return monotone_spline(np.array(self.pressure), np.array(self.stiffness))
 
 
 @dataclass(frozen=True, slots=True)
-class _SplineTerm:
-    """Stiffness of the whole area as the sum over the spots of a formal size distribution.
+class _StiffnessSplineTerm:
+    """Term of one spot whose sum over all spots is the tabulated stiffness of the whole area.
 
-    coefficient : [N/m] stiffness at the first point
+    coefficient : [N/m] stiffness at the first point of the table
+
+    The law has no real spots; its size distribution, with the exponent _SIZE_EXPONENT, only brings the law
+    into the form of the others.
     """
 
-    spline: LogSpline
+    stiffness_spline: LogSpline
     coefficient: Number
     lower_log_area: Number = None
     upper_log_area: Number = None
 
     def evaluate_spot(self, log_area: Number) -> Number:
-        y, slope = self.spline.evaluate(log_area)
+        y, slope = self.stiffness_spline.evaluate_log_stiffness(log_area)
         return self.coefficient * np.exp(y) * (slope - _SIZE_EXPONENT)
 
     def integrate_over_spots(self, size_exponent: Number, largest_log_area: Number) -> Number:
         return self.coefficient * np.exp(
-            self.spline.evaluate(largest_log_area)[0] - size_exponent * largest_log_area
+            self.stiffness_spline.evaluate_log_stiffness(largest_log_area)[0]
+            - size_exponent * largest_log_area
         )
 
 
 @dataclass(frozen=True, kw_only=True)
 class TableLaw(CheckedParameters):
-    """Parameters of the interface law `table`."""
+    """Parameters of the interface law `table`: stiffness from points at some pressures, friction, area."""
 
     table: StiffnessTable = group_field("points of the stiffness over the pressure")
     mu: float = quantity_field("1", "coefficient of static friction", gt=0.0)
@@ -188,39 +193,41 @@ class TableLaw(CheckedParameters):
         return self.table.last_pressure
 
     def spot_distribution(self) -> SpotDistribution:
-        """Load and stiffness of the area A_0 over u = ln(p/p_1), with p_1 the pressure of the first point.
+        """Load and stiffness of the nominal area A_0 as functions of u = ln(p/p_1).
+
+        p_1, K_1: pressure and stiffness per area of the first point
 
         load         : [N] p A_0
-        normal       : [N/m] factor K(p) A_0
-        tangential   : [N/m] ratio times normal
+        normal       : [N/m] stiffness, `factor` times the tabulated K(p) times A_0
+        tangential   : [N/m] stiffness, `ratio` times normal
         elastic_work : [J] p p_1/K_1 A_0, a scale of the energy; only its product with eta_n = 0 is used
         plastic_work : [J] 0: the stiffness is that of small motions
         """
         (p, K), area, spline = self.table.first_point, self.A_0, self.table.spline
         normal = self.table.factor * K * area
 
-        def proportional(coefficient: Number) -> PowerTerm:
+        def make_pressure_proportional_term(sum_coefficient: Number) -> PowerTerm:
             """Load or energy of a spot whose sum over all spots is proportional to the pressure p."""
-            return PowerTerm(coefficient * (1.0 - _SIZE_EXPONENT), 1.0)
+            return PowerTerm(sum_coefficient * (1.0 - _SIZE_EXPONENT), 1.0)
 
         return SpotDistribution(
             reference_area=area,
             size_exponent=_SIZE_EXPONENT,
             size_prefactor=1.0 / _SIZE_EXPONENT,
             regime_terms={
-                "load": (proportional(p * area),),
-                "normal": (_SplineTerm(spline, normal),),
-                "tangential": (_SplineTerm(spline, self.table.ratio * normal),),
-                "elastic_work": (proportional(p * area * p / K),),
-                "plastic_work": (proportional(0.0),),
+                "load": (make_pressure_proportional_term(p * area),),
+                "normal": (_StiffnessSplineTerm(spline, normal),),
+                "tangential": (_StiffnessSplineTerm(spline, self.table.ratio * normal),),
+                "elastic_work": (make_pressure_proportional_term(p * area * p / K),),
+                "plastic_work": (make_pressure_proportional_term(0.0),),
             },
-            onset_log_area=float(np.log(ONSET_PRESSURE_OVER_FIRST_POINT)),
+            onset_log_area=float(np.log(ONSET_PRESSURE_OVER_FIRST_POINT_PRESSURE)),
             has_spot_area=False,
             kink_log_areas=tuple(spline.u[:-1]),
         )
 
     def find_range_violations(self, lowest_pressure: float, highest_pressure: float) -> list[str]:
-        """Messages, one line each, if an interval of pressures [Pa] leaves the points."""
+        """Messages, one line each, if an interval of pressures [Pa] leaves the range of the table."""
         first, last = self.table.pressure[0], self.table.last_pressure
         messages = []
         if lowest_pressure < first:
@@ -245,9 +252,10 @@ class TableLaw(CheckedParameters):
         return loss_factor(self.traction_ratio, spline.y[-1] / spline.u[-1])
 
     def contact_quantities(self, largest_log_area: Number) -> dict[str, Number]:
-        """Contact quantities of the nominal area A_0 at u = ln(p/p_1).
+        """Contact quantities of the nominal area A_0 at u = ln(p/p_1), p_1: pressure of the first point.
 
-        F, K_N, K_T; A_r is not known (NaN); eta_n = 0 and eta_t [1]; friction_limit = mu F [N].
+        F: load [N]; K_N, K_T: normal and tangential stiffness [N/m]; A_r: real area, not known (NaN);
+        eta_n = 0 and eta_t: loss factors [1]; friction_limit = mu F [N].
         """
         s = self.spot_distribution()
         F = s.sum_over_spots("load", largest_log_area)
@@ -262,19 +270,19 @@ class TableLaw(CheckedParameters):
         }
 
 
-def loss_factor(traction_ratio: Number, exponent: Number) -> Number:
-    """Loss factor eta_t [1] of a shear cycle with the amplitude x mu F of the force, for K ~ p^n.
+def loss_factor(traction_ratio: Number, stiffness_exponent: Number) -> Number:
+    """Loss factor eta_t [1] of a shear cycle, for a normal stiffness K ~ p^n at the pressure p.
 
-    traction_ratio : x [1]
-    exponent       : n [1]
+    traction_ratio     : x [1], amplitude of the tangential force divided by the friction limit mu F
+    stiffness_exponent : n [1]
 
     The tangential stiffness on first loading to the share t of mu F is that of the pressure p (1 - t) (Jaeger
-    1995, Ciavarella 1998), so the displacement is s ~ integral of (1 - t)^-n dt. By Masing's rule
+    1995, Ciavarella 1998), so the displacement is s ~ integral of (1 - t)^-n dt from 0 to x. By Masing's rule
     eta_t = (4/pi) [integral of (2 t - x) (1 - t)^-n dt]/(x s), both from 0 to x. With n = 1 this is the loss
     factor of the law `roughness`; small x give 2 n x/(3 pi).
     """
     x = np.maximum(traction_ratio, MIN_TRACTION_OVER_FRICTION_LIMIT)
     end = 0.0 - np.log1p(0.0 - x)  # t = 1 - exp(-v)
-    rest = exponent - 1.0
+    rest = stiffness_exponent - 1.0
     moment = integrate_gauss(lambda v: (0.0 - 2.0 * np.expm1(0.0 - v) - x) * np.exp(rest * v), 0.0 * end, end)
     return 4.0 / np.pi * moment / (x * exp_integral(rest, 0.0, end)) * (traction_ratio / x)

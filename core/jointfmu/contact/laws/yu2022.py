@@ -12,7 +12,7 @@ import numpy as np
 
 from ...quantity import CheckedParameters, Number, choice_field, group_field, quantity_field, select
 from ..interface import HardnessLimitedLaw
-from ..powerlaw import PowerTerm, SmoothTerm, SpotDistribution
+from ..powerlaw import PowerTerm, SmoothFunctionTerm, SpotDistribution
 from ..surface import (
     CommonFlankParameters,
     ElasticConstants,
@@ -22,19 +22,19 @@ from ..surface import (
     hardness_coefficient,
 )
 from .kogut_etsion import (
-    FIRST_STAGE,
-    PLASTIC_AREA_OVER_FIRST_YIELD,
-    PLASTIC_DEFORMATION_OVER_FIRST_YIELD,
-    SECOND_STAGE,
-    SECOND_STAGE_AREA_OVER_FIRST_YIELD,
-    SECOND_STAGE_DEFORMATION_OVER_FIRST_YIELD,
-    PlasticStage,
+    FIRST_ELASTIC_PLASTIC_STAGE,
+    FULL_PLASTIC_OVER_YIELD_AREA,
+    FULL_PLASTIC_OVER_YIELD_DEFORMATION,
+    SECOND_ELASTIC_PLASTIC_STAGE,
+    SECOND_STAGE_OVER_YIELD_AREA,
+    SECOND_STAGE_OVER_YIELD_DEFORMATION,
+    ElasticPlasticStage,
 )
 
 
 @dataclass(frozen=True, kw_only=True)
 class Yu2022(HardnessLimitedLaw, CheckedParameters):
-    """Parameters of the interface law of Yu 2022."""
+    """Parameters of the fractal interface law of Yu 2022, for elliptical contact spots of curved flanks."""
 
     surface1: FlankSurface = group_field("fractal parameters along the major axis")
     surface2: FlankSurface = group_field("fractal parameters along the minor axis")
@@ -72,9 +72,10 @@ class Yu2022(HardnessLimitedLaw, CheckedParameters):
 
     @cached_property
     def _cached_spot_distribution(self) -> SpotDistribution:
-        """Size distribution (lambda times Eq. 44) and the four regimes of a spot, cached.
+        """Size distribution (lambda_ times Eq. 44), and load and stiffness of a spot in four regimes, cached.
 
-        Quantities: load [N], Eqs. 38, 36, 34, 64; normal [N/m], Eqs. 72-75; area, elastic_area [m2].
+        Quantities: load [N], Eqs. 38, 36, 34, 64; normal stiffness [N/m], Eqs. 72-75; area, elastic_area
+        [m2].
         """
         stages, areas = _elastic_plastic_stages(self)
         log_nec = critical_log_area(self, 1.0)
@@ -88,12 +89,15 @@ class Yu2022(HardnessLimitedLaw, CheckedParameters):
         hertz = 2.0 * f2 * E * np.sqrt(a / (np.pi * f1))
 
         def curvature_ratio(log_area: Number) -> Number:
-            """Sum of curvatures 1/R_x + 1/R_y over its value at a_nec [1]; log-area relative to a_nec."""
+            """Sum of both curvatures of a spot, divided by this sum for a spot at the onset of yield [1].
+
+            log_area : ln(area of the spot/area at the onset of yield)
+            """
             return (c1 * np.exp(-p1 * log_area) + c2 * np.exp(-p2 * log_area)) / (c1 + c2)
 
         def make_stage_load(
-            stage: PlasticStage, lower_log_area: Number, upper_log_area: Number
-        ) -> SmoothTerm:
+            elastic_plastic_stage: ElasticPlasticStage, lower_log_area: Number, upper_log_area: Number
+        ) -> SmoothFunctionTerm:
             """Load [N] of a spot in one elastic-plastic stage, between two log-areas."""
 
             def spot_load(log_area: Number) -> Number:
@@ -102,25 +106,35 @@ class Yu2022(HardnessLimitedLaw, CheckedParameters):
                 return (
                     elastic
                     * (c1 + c2)
-                    * stage.load_factor
-                    * (ratio / stage.area_factor) ** (stage.load_exponent / stage.area_exponent)
+                    * elastic_plastic_stage.load_factor
+                    * (ratio / elastic_plastic_stage.area_factor)
+                    ** (elastic_plastic_stage.load_exponent / elastic_plastic_stage.area_exponent)
                     / sharp**2
                 )
 
-            return SmoothTerm(spot_load, lower_log_area, upper_log_area)
+            return SmoothFunctionTerm(spot_load, lower_log_area, upper_log_area)
 
         def make_stage_stiffness(
-            stage: PlasticStage, lower_log_area: Number, upper_log_area: Number
-        ) -> SmoothTerm:
+            elastic_plastic_stage: ElasticPlasticStage, lower_log_area: Number, upper_log_area: Number
+        ) -> SmoothFunctionTerm:
             """Normal stiffness [N/m] of a spot in one elastic-plastic stage, between two log-areas."""
 
             def spot_stiffness(log_area: Number) -> Number:
                 sharp = curvature_ratio(log_area)
                 ratio = np.exp(log_area) * sharp**2
-                power = (ratio / stage.area_factor) ** ((stage.load_exponent - 1.0) / stage.area_exponent)
-                return hertz / 1.5 * stage.load_factor * stage.load_exponent * power / sharp
+                power = (ratio / elastic_plastic_stage.area_factor) ** (
+                    (elastic_plastic_stage.load_exponent - 1.0) / elastic_plastic_stage.area_exponent
+                )
+                return (
+                    hertz
+                    / 1.5
+                    * elastic_plastic_stage.load_factor
+                    * elastic_plastic_stage.load_exponent
+                    * power
+                    / sharp
+                )
 
-            return SmoothTerm(spot_stiffness, lower_log_area, upper_log_area)
+            return SmoothFunctionTerm(spot_stiffness, lower_log_area, upper_log_area)
 
         first, second = stages
         H = self.hardness
@@ -149,7 +163,8 @@ class Yu2022(HardnessLimitedLaw, CheckedParameters):
     def contact_quantities(self, largest_log_area: Number) -> dict[str, Number]:
         """Contact quantities at the log-area u [1] of the largest spot.
 
-        F [N] Eq. 60; K_N [N/m] Eq. 76; A_r [m2] Eq. 54; elastic_fraction [1].
+        F: load [N], Eq. 60; K_N: normal stiffness [N/m], Eq. 76; A_r: real area [m2], Eq. 54;
+        elastic_fraction: elastic share of the real area [1].
         """
         s = self.spot_distribution()
         area, elastic = real_area(s, largest_log_area)
@@ -162,15 +177,17 @@ class Yu2022(HardnessLimitedLaw, CheckedParameters):
 
 
 def real_area(spot_distribution: SpotDistribution, largest_log_area: Number) -> tuple[Number, Number]:
-    """Real area [m2], Eq. 54, and its elastic fraction [1]."""
+    """Real contact area [m2], Eq. 54, and the fraction of it on elastic spots [1]."""
     area = spot_distribution.sum_over_spots("area", largest_log_area)
     return area, spot_distribution.sum_over_spots("elastic_area", largest_log_area) / area
 
 
-def effective_modulus(law: Yu2022) -> Number:
+def effective_modulus(law_parameters: Yu2022) -> Number:
     """Contact modulus E' [Pa], Eq. 21; with a rigid flat only the first body deforms."""
-    single_body = law.side1.E / (1.0 - law.side1.nu**2)
-    return select(law.rigid_flat, single_body, contact_modulus(law.side1, law.side2))
+    single_body = law_parameters.side1.E / (1.0 - law_parameters.side1.nu**2)
+    return select(
+        law_parameters.rigid_flat, single_body, contact_modulus(law_parameters.side1, law_parameters.side2)
+    )
 
 
 def ellipse_factors(eccentricity: Number) -> tuple[Number, Number]:
@@ -181,46 +198,61 @@ def ellipse_factors(eccentricity: Number) -> tuple[Number, Number]:
     return f1, 0.5 * np.pi * np.sqrt(E) / (K**1.5 * slender)
 
 
-def size_exponent(law: Yu2022) -> Number:
-    """Exponent m of the size distribution: zeta (D1 + D2)/2 [1], zeta = sqrt(1 - e^2)/2, Eqs. 42-43."""
-    zeta = 0.5 * np.sqrt((1.0 - law.e) * (1.0 + law.e))
-    return 0.5 * zeta * (law.surface1.D + law.surface2.D)
+def size_exponent(law_parameters: Yu2022) -> Number:
+    """Exponent m [1] of the size distribution of the spots: sqrt(1 - e^2)/2 (D1 + D2)/2, Eqs. 42-43.
+
+    D1, D2: fractal dimensions along both axes of the contact ellipses of eccentricity e.
+    """
+    zeta = 0.5 * np.sqrt((1.0 - law_parameters.e) * (1.0 + law_parameters.e))
+    return 0.5 * zeta * (law_parameters.surface1.D + law_parameters.surface2.D)
 
 
-def curvature_terms(law: Yu2022) -> tuple[tuple[Number, Number], tuple[Number, Number]]:
+def curvature_terms(law_parameters: Yu2022) -> tuple[tuple[Number, Number], tuple[Number, Number]]:
     """Factors and exponents ((b1, p1), (b2, p2)) of the curvatures of a spot of area a, Eqs. 12-13.
 
-    1/R_x = b1 a^-p1 and 1/R_y = b2 a^-p2 [1/m].
+    1/R_x = b1 a^-p1 and 1/R_y = b2 a^-p2 [1/m], along the major axis x and the minor axis y.
     """
-    root = np.sqrt(np.log(law.surface.gamma))
-    log_axes = 0.25 * np.log1p(-(law.e**2))
+    root = np.sqrt(np.log(law_parameters.surface.gamma))
+    log_axes = 0.25 * np.log1p(-(law_parameters.e**2))
 
     def make_curvature_term(surface: FlankSurface, exponent_sign: float) -> tuple[Number, Number]:
-        """Factor b and exponent p of the curvature b a^-p of one surface."""
+        """Factor b and exponent p of the curvature b a^-p [1/m] of a spot of area a, along one axis."""
         b = 2.0 ** (4.0 - surface.D) * np.pi ** (0.5 * surface.D) * surface.G ** (surface.D - 1.0) * root
         return b * np.exp(exponent_sign * surface.D * log_axes), 0.5 * surface.D
 
-    return make_curvature_term(law.surface1, 1.0), make_curvature_term(law.surface2, -1.0)
+    return make_curvature_term(law_parameters.surface1, 1.0), make_curvature_term(
+        law_parameters.surface2, -1.0
+    )
 
 
-def yield_onset_parameter(law: Yu2022) -> Number:
-    """Value of a (1/R_x + 1/R_y)^2 [1] at the onset of yield: 4 pi f1 K(e) E(e) (K H/E')^2, Eq. 28."""
-    K, E = complete_elliptic_integrals(law.e)
-    f1, _ = ellipse_factors(law.e)
-    strain = hardness_coefficient(law.side1.nu) * law.hardness / effective_modulus(law)
+def yield_onset_parameter(law_parameters: Yu2022) -> Number:
+    """Value of a (1/R_x + 1/R_y)^2 [1] at the onset of yield: 4 pi f1 K(e) E(e) (k H/E')^2, Eq. 28.
+
+    a is the area of the spot; R_x and R_y are its radii of curvature. f1: first of `ellipse_factors`; K(e)
+    and E(e): elliptic integrals; k: `hardness_coefficient` (K in Eq. 28); H: hardness; E': contact modulus.
+    """
+    K, E = complete_elliptic_integrals(law_parameters.e)
+    f1, _ = ellipse_factors(law_parameters.e)
+    strain = (
+        hardness_coefficient(law_parameters.side1.nu)
+        * law_parameters.hardness
+        / effective_modulus(law_parameters)
+    )
     return 4.0 * np.pi * f1 * K * E * strain**2
 
 
-def critical_log_area(law: Yu2022, yield_onset_ratio: float) -> Number:
+def critical_log_area(law_parameters: Yu2022, yield_parameter_over_onset: float) -> Number:
     """Log-area ln a [ln m2] of the spot with a given value of a (1/R_x + 1/R_y)^2, Eqs. 28, 31, 32.
 
-    yield_onset_ratio : this value over its value at the onset of yield [1], see `yield_onset_parameter`
+    a is the area of the spot; R_x and R_y are its radii of curvature.
 
-    Newton's method in ln a. The function is convex and decreases with a slope between 1 - max(D) and
-    1 - min(D), so twelve steps reach round-off.
+    yield_parameter_over_onset : a (1/R_x + 1/R_y)^2 divided by its value at the onset of yield [1]
+
+    Newton's method in ln a. The function is convex and decreases with a slope between 1 - max(D1, D2) and
+    1 - min(D1, D2), D1 and D2: fractal dimensions along both axes. So twelve steps reach round-off.
     """
-    (b1, p1), (b2, p2) = curvature_terms(law)
-    target = np.log(yield_onset_ratio * yield_onset_parameter(law))
+    (b1, p1), (b2, p2) = curvature_terms(law_parameters)
+    target = np.log(yield_parameter_over_onset * yield_onset_parameter(law_parameters))
     mean = 0.5 * (p1 + p2)
     t = (target - 2.0 * np.log(b1 + b2)) / (1.0 - 2.0 * mean)
     for _ in range(12):
@@ -230,22 +262,27 @@ def critical_log_area(law: Yu2022, yield_onset_ratio: float) -> Number:
     return t
 
 
-def _elastic_plastic_stages(law: Yu2022) -> tuple[tuple[PlasticStage, PlasticStage], tuple[float, float]]:
-    """Two elastic-plastic stages, and the limits of plastic and second stage as areas over a_nec(R_m) [1].
+def _elastic_plastic_stages(
+    law_parameters: Yu2022,
+) -> tuple[tuple[ElasticPlasticStage, ElasticPlasticStage], tuple[float, float]]:
+    """Two elastic-plastic stages, and the relative areas [1] at the ends of the second and of the first.
 
-    Stages and limits depend on `plastic_area`, the choice of the relation between area a and deformation w:
+    The areas are divided by a_nec(R_m), the area at the onset of yield for the mean radius R_m of curvature.
+    Stages and areas depend on the parameter `plastic_area`, the relation between area a and deformation w
+    (w_nec: deformation at the onset of yield):
 
     geometric    : elastic relation a = f1 pi R_m w, so w/w_nec = a/a_nec(R_m), which is (a/a_nec)^-(D - 1)
-                   for D1 = D2; limits 6 and 110 of Eqs. 31-32
-    kogut_etsion : a = a_nec(R_m) m (w/w_nec)^n as in Eqs. 33 and 35; limits 7.1197 and 205.38
+                   for D1 = D2 = D; areas 110 and 6 of Eqs. 31-32
+    kogut_etsion : a = a_nec(R_m) m (w/w_nec)^n as in Eqs. 33 and 35, with area_factor m and area_exponent n
+                   of the stage; areas 205.38 and 7.1197
     """
-    if law.plastic_area == "kogut_etsion":
-        return (FIRST_STAGE, SECOND_STAGE), (
-            PLASTIC_AREA_OVER_FIRST_YIELD,
-            SECOND_STAGE_AREA_OVER_FIRST_YIELD,
+    if law_parameters.plastic_area == "kogut_etsion":
+        return (FIRST_ELASTIC_PLASTIC_STAGE, SECOND_ELASTIC_PLASTIC_STAGE), (
+            FULL_PLASTIC_OVER_YIELD_AREA,
+            SECOND_STAGE_OVER_YIELD_AREA,
         )
     plain = (
-        FIRST_STAGE._replace(area_factor=1.0, area_exponent=1.0),
-        SECOND_STAGE._replace(area_factor=1.0, area_exponent=1.0),
+        FIRST_ELASTIC_PLASTIC_STAGE._replace(area_factor=1.0, area_exponent=1.0),
+        SECOND_ELASTIC_PLASTIC_STAGE._replace(area_factor=1.0, area_exponent=1.0),
     )
-    return plain, (PLASTIC_DEFORMATION_OVER_FIRST_YIELD, SECOND_STAGE_DEFORMATION_OVER_FIRST_YIELD)
+    return plain, (FULL_PLASTIC_OVER_YIELD_DEFORMATION, SECOND_STAGE_OVER_YIELD_DEFORMATION)

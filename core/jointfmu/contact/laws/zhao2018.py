@@ -24,7 +24,7 @@ from . import mindlin
 
 @dataclass(frozen=True, kw_only=True)
 class Zhao2018(HardnessLimitedLaw, CheckedParameters):
-    """Parameters of the interface law of Zhao 2018."""
+    """Parameters of the fractal interface law of Zhao 2018, with its stiffness, energies and damping."""
 
     surface: ProfileSurface = group_field("equivalent rough surface")
     side1: ElasticConstants = group_field("first body")
@@ -55,8 +55,9 @@ class Zhao2018(HardnessLimitedLaw, CheckedParameters):
 
         The log-area t of a spot is relative to the critical area a'_c; elastic for t > 0, plastic for t <= 0.
 
-        Quantities: load [N]; normal, tangential [N/m]; area [m2] real; plastic_work [J] (Eq. 15);
-        elastic_work [J] (Eq. 17); loop_area [m3], the sum of a'^(3/2) that Eqs. 24 and 26 need.
+        Quantities: load [N]; normal and tangential stiffness [N/m]; real area [m2]; plastic_work [J]
+        (Eq. 15); elastic_work [J] (Eq. 17); loop_area [m3], a'^(3/2) of elastic spots, for the energies of a
+        shear cycle (Eqs. 24 and 26).
         """
         D = self.surface.D
         a = critical_area(self)
@@ -81,7 +82,10 @@ class Zhao2018(HardnessLimitedLaw, CheckedParameters):
         )
 
     def shear_stiffness_ratio(self) -> Number:
-        """Stiffness ratio K_T/K_N [1], independent of pressure: both sum sqrt(a') over elastic spots."""
+        """Ratio K_T/K_N [1] of tangential to normal stiffness, independent of the pressure.
+
+        Both stiffnesses are proportional to the sum of sqrt(spot area) over the elastic spots.
+        """
         return tangential_stiffness(self, 1.0) / normal_stiffness(self, 1.0)
 
     def loss_factor(self) -> Number:
@@ -91,10 +95,12 @@ class Zhao2018(HardnessLimitedLaw, CheckedParameters):
     def contact_quantities(self, largest_log_area: Number) -> dict[str, Number]:
         """Contact quantities of the nominal area A_0 for a largest spot of log-area u [1], relative to a'_c.
 
-        F [N] Eqs. 9-10; K_N [N/m] Eq. 14; K_T [N/m] Eq. 22; A_r [m2] Eq. 11; W_NP, W_NE [J] Eqs. 16, 18;
-        eta_n [1] Eq. 19; C_N [N.s/m] Eq. 20; W_d, W, W_e [J] Eqs. 24, 26, 27; eta_t [1] Eq. 28;
-        C_T [N.s/m] = eta_t sqrt(mass K_T). Where no spot is elastic (u <= 0) the stiffness is zero and
-        eta_n infinite.
+        F: load [N], Eqs. 9-10; K_N, K_T: normal and tangential stiffness [N/m], Eqs. 14 and 22; A_r: real
+        area [m2], Eq. 11; W_NP, W_NE: plastic and elastic work of normal loading [J], Eqs. 16, 18; W_d, W,
+        W_e: dissipated energy, 2 pi times the stored energy, and their difference W - W_d [J] of a shear
+        cycle, Eqs. 24, 26, 27; eta_n, eta_t: normal and tangential loss factor [1], Eqs. 19 and 28; C_N, C_T:
+        equivalent viscous damping [N.s/m], eta_n sqrt(mass K_N) (Eq. 20) and eta_t sqrt(mass K_T). Where no
+        spot is elastic (u <= 0) the stiffness is zero and eta_n infinite.
         """
         s = self.spot_distribution()
         F, A_r, K_N, K_T = (
@@ -124,84 +130,102 @@ class Zhao2018(HardnessLimitedLaw, CheckedParameters):
         }
 
 
-def critical_area(law: Zhao2018) -> Number:
+def critical_area(law_parameters: Zhao2018) -> Number:
     """Critical area a'_c [m2]: smaller spots are plastic, larger ones elastic, Eq. 4.
 
-    The critical area depends on the choice `critical_area`:
+    The critical area depends on the parameter `critical_area`:
 
-    continuity : f_e = H a' (default: the only choice without a jump of the force)
+    continuity : the elastic load of the spot equals hardness H times its area (default: the only choice
+        without a jump of the force)
     printed    : Eq. 4 as printed
-    yield      : onset of yield at a Hertz pressure k H, delta = (pi k H/2E*)^2 R
+    yield      : onset of yield at a Hertz pressure k H, at the deformation (pi k H/2E*)^2 R, with
+        k: `hardness_coefficient`, E*: contact modulus, R: radius of curvature
     """
-    D, G, log_gamma = law.surface.D, law.surface.G, np.log(law.surface.gamma)
-    ratio = contact_modulus(law.side1, law.side2) / law.H
-    if law.critical_area == "printed":
+    D, G, log_gamma = law_parameters.surface.D, law_parameters.surface.G, np.log(law_parameters.surface.gamma)
+    ratio = contact_modulus(law_parameters.side1, law_parameters.side2) / law_parameters.H
+    if law_parameters.critical_area == "printed":
         return 2.0 * (2.0 * ratio) ** (2.0 / (D - 1.0)) * G**2
-    if law.critical_area == "yield":
-        onset = 0.5 * np.pi * hardness_coefficient(law.side1.nu) / ratio
+    if law_parameters.critical_area == "yield":
+        onset = 0.5 * np.pi * hardness_coefficient(law_parameters.side1.nu) / ratio
         root = 2.0 ** (7.0 - 2.0 * D) * log_gamma * np.pi ** (D - 1.0) / onset**2
         return root ** (1.0 / (D - 1.0)) * G**2
     root = 2.0 ** (9.0 - 2.0 * D) * ratio**2 * log_gamma / (9.0 * np.pi ** (3.0 - D))
     return root ** (1.0 / (D - 1.0)) * G**2
 
 
-def spot_deformation(law: Zhao2018, truncated_area: Number) -> Number:
+def spot_deformation(law_parameters: Zhao2018, truncated_area: Number) -> Number:
     """Deformation delta [m] of a spot of truncated area a' [m2], Eq. 5."""
-    D, G = law.surface.D, law.surface.G
-    root = np.sqrt(np.log(law.surface.gamma))
+    D, G = law_parameters.surface.D, law_parameters.surface.G
+    root = np.sqrt(np.log(law_parameters.surface.gamma))
     factor = 2.0 ** (3.0 - D) * G ** (D - 1.0) * root * np.pi ** (0.5 * D - 1.0)
     return factor * truncated_area ** (1.0 - 0.5 * D)
 
 
-def curvature_radius(law: Zhao2018, truncated_area: Number) -> Number:
+def curvature_radius(law_parameters: Zhao2018, truncated_area: Number) -> Number:
     """Radius of curvature R [m] of a spot of truncated area a' [m2], Eq. 6."""
-    D, G = law.surface.D, law.surface.G
-    root = np.sqrt(np.log(law.surface.gamma))
+    D, G = law_parameters.surface.D, law_parameters.surface.G
+    root = np.sqrt(np.log(law_parameters.surface.gamma))
     return truncated_area ** (0.5 * D) / (2.0 ** (4.0 - D) * np.pi ** (0.5 * D) * G ** (D - 1.0) * root)
 
 
-def elastic_load(law: Zhao2018, truncated_area: Number) -> Number:
+def elastic_load(law_parameters: Zhao2018, truncated_area: Number) -> Number:
     """Load f_e [N] of an elastic spot of truncated area a' [m2], Eq. 7."""
-    modulus = contact_modulus(law.side1, law.side2)
+    modulus = contact_modulus(law_parameters.side1, law_parameters.side2)
     return (
         4.0
         / 3.0
         * modulus
-        * np.sqrt(curvature_radius(law, truncated_area))
-        * spot_deformation(law, truncated_area) ** 1.5
+        * np.sqrt(curvature_radius(law_parameters, truncated_area))
+        * spot_deformation(law_parameters, truncated_area) ** 1.5
     )
 
 
-def normal_stiffness(law: Zhao2018, truncated_area: Number) -> Number:
+def normal_stiffness(law_parameters: Zhao2018, truncated_area: Number) -> Number:
     """Normal stiffness k_n [N/m] of an elastic spot of truncated area a' [m2].
 
-    family : (df/da')/(d delta/da'), Eq. 13
-    hertz  : 2 E* r at fixed R; `family` is 2(3-D)/(3(2-D)) times this
+    The stiffness depends on the parameter `spot_stiffness`:
+
+    family : (df/da')/(d delta/da') of load f and deformation delta, Eq. 13: the radius of curvature R changes
+        with the area
+    hertz  : 2 E* r at fixed R, with contact modulus E* and contact radius r; `family` is 2(3-D)/(3(2-D))
+        times this, with the fractal dimension D
     """
-    hertz = 2.0 * contact_modulus(law.side1, law.side2) * np.sqrt(truncated_area / (2.0 * np.pi))
-    if law.spot_stiffness == "hertz":
+    hertz = (
+        2.0
+        * contact_modulus(law_parameters.side1, law_parameters.side2)
+        * np.sqrt(truncated_area / (2.0 * np.pi))
+    )
+    if law_parameters.spot_stiffness == "hertz":
         return hertz
-    return 2.0 * (3.0 - law.surface.D) / (3.0 * (2.0 - law.surface.D)) * hertz
+    return 2.0 * (3.0 - law_parameters.surface.D) / (3.0 * (2.0 - law_parameters.surface.D)) * hertz
 
 
-def tangential_stiffness(law: Zhao2018, truncated_area: Number) -> Number:
-    """Tangential stiffness k_t = 8 G' r (1 - x)^(1/3) [N/m] of an elastic spot of area a', Eqs. 21-22."""
-    modulus = contact_shear_modulus(law.side1, law.side2)
-    stick, _ = mindlin.stick_radius_ratio(law.traction_ratio)
+def tangential_stiffness(law_parameters: Zhao2018, truncated_area: Number) -> Number:
+    """Tangential stiffness k_t = 8 G' r (1 - x)^(1/3) [N/m] of an elastic spot, Eqs. 21-22.
+
+    G': contact shear modulus, r: contact radius, x: traction ratio.
+    """
+    modulus = contact_shear_modulus(law_parameters.side1, law_parameters.side2)
+    stick, _ = mindlin.stick_radius_ratio(law_parameters.traction_ratio)
     return 8.0 * modulus * np.sqrt(truncated_area / (2.0 * np.pi)) * stick
 
 
 def shear_energies(
-    law: Zhao2018, F: Number, A_r: Number, spot_area_power_sum: Number
+    law_parameters: Zhao2018, F: Number, A_r: Number, spot_area_power_sum: Number
 ) -> tuple[Number, Number]:
-    """Dissipated energy W_d and 2 pi times stored energy W [J] of a shear cycle, Eqs. 24 and 26.
+    """Dissipated energy W_d, and W, 2 pi times the stored energy [J], of a shear cycle, Eqs. 24 and 26.
 
-    spot_area_power_sum : [m3] sum of a'^(3/2) over elastic spots; Eq. 24 has the factor 9 sqrt(2 pi)/40
+    F, A_r              : load [N] and real area [m2] of the contact
+    spot_area_power_sum : [m3] sum of a'^(3/2) over elastic spots of truncated area a'; Eq. 24 with the factor
+        9 sqrt(2 pi)/40
     """
-    traction = law.mu * F / A_r
+    traction = law_parameters.mu * F / A_r
     common = (
-        traction**2 * np.sqrt(np.pi / 8.0) / contact_shear_modulus(law.side1, law.side2) * spot_area_power_sum
+        traction**2
+        * np.sqrt(np.pi / 8.0)
+        / contact_shear_modulus(law_parameters.side1, law_parameters.side2)
+        * spot_area_power_sum
     )
-    dissipated = 0.9 * common * mindlin.dissipation_function(law.traction_ratio)
-    stored = 0.375 * np.pi * common * mindlin.storage_function(law.traction_ratio)
+    dissipated = 0.9 * common * mindlin.dissipation_function(law_parameters.traction_ratio)
+    stored = 0.375 * np.pi * common * mindlin.storage_function(law_parameters.traction_ratio)
     return dissipated, stored

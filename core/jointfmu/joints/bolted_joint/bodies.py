@@ -10,12 +10,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...quantity import Array
-from .law import MODAL_ENTRIES, ElasticBodies
+from .law import MODAL_ENTRY_NAMES, ElasticBodies
 
 MODAL_DISPLACEMENT_DECIMALS = 4
 """Decimals to which the displacements of a mode are rounded [1]; the displacements are at most 1."""
-POSITION_TOLERANCE = 1e-6
+PATCH_POSITION_TOLERANCE = 1e-6
 """Largest distance [m] of a friction patch from its position when the modes were computed."""
+_OTHER_CONTACT_TEXT = (
+    "[bodies] was computed for another contact; write the file again with jointfmu new bolted-joint"
+)
+"""Reason of the errors about modes whose points or patches are not those of the contact."""
 
 
 @dataclass(frozen=True)
@@ -24,26 +28,26 @@ class MemberModes:
 
     The displacements are those of n contact points, m friction patches and b bolts.
 
-    stiffness          : (k) [N/m]
-    opening            : (n, k) [1] of the points
+    modal_stiffness    : (k) [N/m]
+    point_opening      : (n, k) [1] of the contact at the points
     patch_displacement : (3, m, k) [1] of the patches along x, along y and around their centres
     bolt_elongation    : (b, k) [1]
     """
 
-    stiffness: Array
-    opening: Array
+    modal_stiffness: Array
+    point_opening: Array
     patch_displacement: Array
     bolt_elongation: Array
 
     @classmethod
-    def for_rigid_bodies(cls, point_count: int, patch_count: int, bolt_count: int) -> "MemberModes":
+    def from_rigid_members(cls, point_count: int, patch_count: int, bolt_count: int) -> "MemberModes":
         """Empty set of modes for rigid members, with the given numbers of points, patches and bolts."""
         return cls(
             np.zeros(0), np.zeros((point_count, 0)), np.zeros((3, patch_count, 0)), np.zeros((bolt_count, 0))
         )
 
     @classmethod
-    def for_bodies(
+    def from_elastic_bodies(
         cls, elastic_bodies: ElasticBodies, point_count: int, patch_positions: Array
     ) -> "MemberModes":
         """Deformation modes of elastic members, read from the section [bodies] of a parameter file.
@@ -57,12 +61,17 @@ class MemberModes:
         position = np.stack([elastic_bodies.x, elastic_bodies.y], axis=1)
         if len(elastic_bodies.opening) != point_count * count or position.shape != patch_positions.shape:
             stated = f"{len(elastic_bodies.opening) // count} points and {len(position)} patches"
-            raise ValueError(f"[bodies] has {stated}, the contact {point_count} and {len(patch_positions)}")
-        if (distance := float(np.max(np.abs(position - patch_positions)))) > POSITION_TOLERANCE:
             raise ValueError(
-                f"[bodies] lies {distance:.3g} m away from the contact: it was computed for another contact; "
-                f"expected at most {POSITION_TOLERANCE:g} m"
+                f"[bodies] has {stated}, but the contact has {point_count} points and {len(patch_positions)} "
+                f"patches: {_OTHER_CONTACT_TEXT}"
             )
-        rows = {name: np.array(getattr(elastic_bodies, name)).reshape(-1, count) for name in MODAL_ENTRIES}
+        if (distance := float(np.max(np.abs(position - patch_positions)))) > PATCH_POSITION_TOLERANCE:
+            raise ValueError(
+                f"[bodies] has patches up to {distance:.3g} m away from those of the contact, allowed is "
+                f"{PATCH_POSITION_TOLERANCE:g} m: {_OTHER_CONTACT_TEXT}"
+            )
+        rows = {
+            name: np.array(getattr(elastic_bodies, name)).reshape(-1, count) for name in MODAL_ENTRY_NAMES
+        }
         patch_displacement = np.stack([rows[f"patch_{direction}"] for direction in ("x", "y", "around")])
         return cls(np.array(elastic_bodies.stiffness), rows["opening"], patch_displacement, rows["stretch"])

@@ -17,13 +17,14 @@ from ...mechanics.footprint.distribution import NodalField
 from ...quantity import Array
 from .law import AnyBoltedJoint, ElasticBodies, working_preload
 
-LIFT_OFF_FORCE_OVER_CLOSING_LOAD = 1e-9
-"""Largest force of a bolt at lift-off, over the load at which the contact closes [1]. At lift-off the
-stiffness is the mean of the values before and after. Round-off of the equilibrium is far below this force."""
+LIFT_OFF_FORCE_OVER_CLOSING_END_FORCE = 1e-9
+"""Largest force of a bolt that counts as at lift-off, over the force of the contact at the end of its closing
+[1]. At lift-off the stiffness is the mean of the values before and after. Round-off of the equilibrium is far
+below this force."""
 LIFT_OFF_OVER_FULL_STIFFNESS = 0.5
 """Stiffness of a bolt at lift-off over its full stiffness [1]. A bolt without preload is at lift-off in the
 tightened state."""
-ONE_ROW_TOLERANCE = 1e-6
+ONE_BOLT_ROW_TOLERANCE = 1e-6
 """Distance across the rows over the size of the bolt pattern [1] up to which bolts form one row."""
 
 
@@ -43,18 +44,19 @@ class BoltSprings:
     lift_off_force: float
 
     @classmethod
-    def for_joint(cls, joint: AnyBoltedJoint, closure_pressure: float) -> "BoltSprings":
+    def from_joint(cls, joint_parameters: AnyBoltedJoint, closing_end_pressure: float) -> "BoltSprings":
         """Make the bolt springs of a joint.
 
-        closure_pressure : [Pa] contact pressure at zero approach; times A_0 it scales `lift_off_force`
+        closing_end_pressure : [Pa] contact pressure at the end of the closing of the contact; this pressure
+                               times the nominal area scales `lift_off_force`
         """
-        position = bolt_positions(joint)
-        count = float(joint.n_bolts) / len(position)
+        position = bolt_positions(joint_parameters)
+        count = float(joint_parameters.n_bolts) / len(position)
         return cls(
             position,
             count,
-            float(joint.bolt_stiffness),
-            LIFT_OFF_FORCE_OVER_CLOSING_LOAD * closure_pressure * float(joint.A_0),
+            float(joint_parameters.bolt_stiffness),
+            LIFT_OFF_FORCE_OVER_CLOSING_END_FORCE * closing_end_pressure * float(joint_parameters.A_0),
         )
 
     @cached_property
@@ -62,66 +64,70 @@ class BoltSprings:
         """Force added to each bolt per unit moment about x (b) [1/m], see `bolt_force_per_moment`."""
         return bolt_force_per_moment(self.position) / self.bolts_per_position
 
-    def preload_force(self, joint: AnyBoltedJoint, preload: float, moment: float) -> Array:
+    def preload_force(self, joint_parameters: AnyBoltedJoint, preload: float, bending_moment: float) -> Array:
         """Force (b) [N] of each bolt in the preload state: preload after embedding, and share of a moment.
 
         The force is at least 0.
 
         preload : [N] assembly preload of each bolt
-        moment  : [N.m] bending moment about x on the joint
+        bending_moment : [N.m] bending moment about x on the joint
         """
-        return np.asarray(np.maximum(working_preload(joint, preload) + moment * self.force_per_moment, 0.0))
+        return np.asarray(
+            np.maximum(
+                working_preload(joint_parameters, preload) + bending_moment * self.force_per_moment, 0.0
+            )
+        )
 
-    def head_gap(self, preload_force: Array, elongation: Array) -> Array:
+    def head_gap(self, preload_force: Array, bolt_elongation: Array) -> Array:
         """Gap h (b) [m] between head and member; 0 while the bolt is under tension.
 
         The head lifts off when the joint shortens by more than the elongation of the bolt at tightening.
 
         preload_force : (b) [N] force of each bolt at tightening
-        elongation    : (b) [m] of the clamped length since tightening
+        bolt_elongation : (b) [m] of the clamped length since tightening
         """
         if self.stiffness == 0.0:
-            return np.zeros_like(elongation)
-        return np.maximum(-(preload_force + self.stiffness * elongation), 0.0) / self.stiffness
+            return np.zeros_like(bolt_elongation)
+        return np.maximum(-(preload_force + self.stiffness * bolt_elongation), 0.0) / self.stiffness
 
-    def bolt_force(self, preload_force: Array, elongation: Array) -> Array:
+    def bolt_force(self, preload_force: Array, bolt_elongation: Array) -> Array:
         """Force F (b) [N] of each bolt, at least 0, from force at tightening (b) [N] and elongation [m]."""
-        return np.maximum(preload_force + self.stiffness * elongation, 0.0)
+        return np.maximum(preload_force + self.stiffness * bolt_elongation, 0.0)
 
-    def active_stiffness(self, preload_force: Array, elongation: Array) -> Array:
+    def active_stiffness(self, preload_force: Array, bolt_elongation: Array) -> Array:
         """Stiffness dF/de (b) [N/m] of each bolt; 0 if its head has lifted off.
 
         At lift-off, the result is the mean of the stiffness before and after.
         """
-        force = preload_force + self.stiffness * elongation
-        pulling = np.where(
+        force = preload_force + self.stiffness * bolt_elongation
+        active_fraction = np.where(
             force > self.lift_off_force,
             1.0,
             np.where(force < -self.lift_off_force, 0.0, LIFT_OFF_OVER_FULL_STIFFNESS),
         )
-        return np.asarray(self.stiffness * pulling)
+        return np.asarray(self.stiffness * active_fraction)
 
 
-def bolt_positions(joint: AnyBoltedJoint) -> Array:
+def bolt_positions(joint_parameters: AnyBoltedJoint) -> Array:
     """Positions (b, 2) [m] of the bolts of a joint, from the centroid of its contact.
 
     A nodal field without a list of bolts gets four positions with the stated means of x, y, x^2, y^2 and x y.
     """
-    if isinstance(joint.bodies, ElasticBodies):
-        return np.stack([joint.bodies.bolt_x, joint.bodies.bolt_y], axis=-1)
-    if isinstance(joint.pattern, NodalField) and not joint.pattern.each_bolt_x:
-        return _equivalent_positions(*joint.pattern.bolt_position_means)
-    return joint.pattern.bolt_positions
+    if isinstance(joint_parameters.bodies, ElasticBodies):
+        return np.stack([joint_parameters.bodies.bolt_x, joint_parameters.bodies.bolt_y], axis=-1)
+    if isinstance(joint_parameters.pattern, NodalField) and not joint_parameters.pattern.each_bolt_x:
+        return _equivalent_positions(*joint_parameters.pattern.bolt_position_means)
+    return joint_parameters.pattern.bolt_positions
 
 
 def bolt_force_per_moment(bolt_position: Array) -> Array:
     """Force added to each bolt per unit moment about x (b) [1/m].
 
-    The forces are those of `BoltedPlate.pressure_distribution`. Bolts of one row along x cannot carry a
-    moment by their forces: 0.
+    The moment is distributed to the bolts as in `BoltedPlate.pressure_distribution`. Bolts of one row along x
+    cannot carry a moment by their forces: 0.
     """
     x, y = bolt_position.T
-    if np.ptp(y) <= ONE_ROW_TOLERANCE * max(float(np.ptp(x)), float(np.max(np.abs(y)))):
+    if np.ptp(y) <= ONE_BOLT_ROW_TOLERANCE * max(float(np.ptp(x)), float(np.max(np.abs(y)))):
         return np.zeros_like(y)
     away = y - np.sum(y) / len(y)
     return np.asarray(away / float(away @ away))

@@ -11,7 +11,7 @@ STIFFNESS_UNITS = {"x": "N/m", "y": "N/m", "z": "N/m", "rx": "N.m/rad", "ry": "N
 """{force along or moment about an axis: unit of its stiffness}."""
 COMPLIANCE_COMPONENTS = ("interface", "members", "bolts")
 """Parts of the joint whose compliances add up, in the order of `component_compliances`."""
-MIN_INTERFACE_SHARE = 0.1
+MIN_INTERFACE_COMPLIANCE_SHARE = 0.1
 """Share of the interface in the compliance of the joint [1] from which its law matters."""
 MIN_BOLT_OVER_JOINT_STIFFNESS = 1e-9
 """Bolt stiffness over joint stiffness [1] that counts as zero: round-off of the bolt positions."""
@@ -44,7 +44,7 @@ class Compliances(NamedTuple):
     bolt_force: Array
 
     @classmethod
-    def for_assembly(
+    def from_assembly(
         cls, assembly: JointAssembly, tangent_stiffness: Array, active_bolt_stiffness: Array
     ) -> "Compliances":
         """Compliances of a tightened joint.
@@ -56,9 +56,9 @@ class Compliances(NamedTuple):
             condense_stiffness(tangent_stiffness),
             -np.linalg.solve(tangent_stiffness[6:, 6:], tangent_stiffness[6:, :6]),
         )
-        rigid, bolt = assembly.elongation_jacobian[:, :6], active_bolt_stiffness[:, None]
+        rigid, bolt = assembly.full_elongation_jacobian[:, :6], active_bolt_stiffness[:, None]
         elongation = rigid + assembly.modes.bolt_elongation @ follow
-        members = assembly.modes.stiffness @ follow**2
+        members = assembly.modes.modal_stiffness @ follow**2
         bolts, rigid_bolts = (np.sum(bolt * each**2, axis=0) for each in (elongation, rigid))
         held = np.diag(K)
         parts = np.stack([held - members - bolts, members, bolts]) / held**2
@@ -80,9 +80,12 @@ class Compliances(NamedTuple):
         """Stiffness (6) [N/m, N.m/rad] of the members as springs in series with interface and bolts."""
         return np.asarray(1.0 / self.component_compliances[1])
 
-    def table_rows(self) -> list[tuple[str, str, list[float], list[float]]]:
-        """Row of a table for each direction: name, unit, stiffness of joint, interface, members and bolts (0:
-        none), and the shares [1] of the last three in the compliance."""
+    def compliance_table_rows(self) -> list[tuple[str, str, list[float], list[float]]]:
+        """Table of stiffnesses and compliance shares, with one row for each of the six directions.
+
+        A row has the name of the stiffness, its unit, the stiffness of joint, interface, members and bolts
+        (0: bolts without stiffness), and the shares [1] of the last three in the compliance of the joint.
+        """
         joint = 1.0 / self.total_compliance
         bolts = np.where(
             self.bolt_stiffness > MIN_BOLT_OVER_JOINT_STIFFNESS * joint, self.bolt_stiffness, 0.0
@@ -95,8 +98,8 @@ class Compliances(NamedTuple):
 
     @property
     def is_interface_relevant(self) -> bool:
-        """Whether the share of the interface in the compliance reaches MIN_INTERFACE_SHARE in a direction."""
-        return bool(np.max(self.compliance_shares[0]) >= MIN_INTERFACE_SHARE)
+        """Whether the interface has a share of at least MIN_INTERFACE_COMPLIANCE_SHARE in a compliance."""
+        return bool(np.max(self.compliance_shares[0]) >= MIN_INTERFACE_COMPLIANCE_SHARE)
 
     @property
     def joint_load_factor(self) -> float:
@@ -114,6 +117,6 @@ class Compliances(NamedTuple):
         return tightening_force / float(share * (1.0 - self.joint_load_factor))
 
 
-def _stiffness_name(direction: str) -> str:
+def _stiffness_name(stiffness_direction: str) -> str:
     """Name of the stiffness along or about an axis: K_zz, K_rx."""
-    return f"K_{direction if direction.startswith('r') else 2 * direction}"
+    return f"K_{stiffness_direction if stiffness_direction.startswith('r') else 2 * stiffness_direction}"

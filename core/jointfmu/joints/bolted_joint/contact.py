@@ -1,6 +1,7 @@
 """Contact of the interface: pressure of the points, approach of the friction patches, elastic shear.
 
-The points and the patches follow one curve of contact pressure over approach.
+The points and the patches follow one curve of contact pressure over approach. At approach 0 the closing of
+the contact ends, and the contact law begins. At a negative approach the contact is closing, or open.
 """
 
 from collections.abc import Sequence
@@ -16,24 +17,24 @@ from ...quantity import Array, Number, select
 from .kinematics import rigid_opening
 from .law import AnyBoltedJoint, preload_pressure
 
-ADDED_OVER_MEAN_PRESSURE = 0.01
+TRANSFER_PRESSURE_OFFSET_OVER_MEAN = 0.01
 """Pressure over the mean pressure [1] added to all points and patches when the normal force is distributed,
 so that open points and patches take part."""
 SINKHORN_ITERATIONS = 100
 """Number of Sinkhorn iterations [1]: with all patches, and again with the selected patches of each point."""
-MIN_TRANSFER_SHARE, MAX_PATCHES_PER_POINT = 0.02, 8
+MIN_FORCE_TRANSFER_SHARE, MAX_PATCHES_PER_POINT = 0.02, 8
 """Smallest share of the force of a point for a patch [1], and largest number of patches of a point [1]."""
-TRANSFER_DECIMALS = 4
+FORCE_TRANSFER_DECIMALS = 4
 """Decimals to which the shares of `force_transfer` are rounded [1]."""
-MAX_OVER_MEAN_SQUARE_DISTANCE = 300.0
+MAX_TRANSFER_SQUARE_DISTANCE_OVER_MEAN = 300.0
 """Largest square distance from a patch over the mean square distance [1]; it replaces larger ones."""
 
 
 class PreloadState(NamedTuple):
     """Approach and pressure of the contact after tightening, before the sides move.
 
-    approach, pressure : (n) [m] and (n) [Pa] of the points
-    patch_approach     : (m) [m]
+    approach, pressure : (n) [m] and (n) [Pa] of the n contact points
+    patch_approach     : (m) [m] of the m friction patches
     """
 
     approach: Array
@@ -44,9 +45,9 @@ class PreloadState(NamedTuple):
 class NormalState(NamedTuple):
     """Approach, pressure and stiffness of the contact at a relative displacement of the sides.
 
-    approach            : (n) [m] of the points
+    approach            : (n) [m] of the n contact points
     pressure, stiffness : p (n) [Pa] and dp/d(approach) (n) [Pa/m] of the points
-    patch_approach      : (m) [m]
+    patch_approach      : (m) [m] of the m friction patches
     """
 
     approach: Array
@@ -59,7 +60,7 @@ class NormalState(NamedTuple):
 class Contact:
     """Contact interface of a bolted joint: points carry the contact pressure, patches the friction.
 
-    pressure_curve      : contact pressure [Pa] over approach [m]
+    pressure_curve      : contact pressure [Pa] as a function of the approach [m]
     has_elastic_members : the patches take the normal force of the points around them. Between rigid members
                           each patch has its own pressure at tightening, and opens at its own position.
     """
@@ -71,32 +72,39 @@ class Contact:
 
     @cached_property
     def pressure_transfer(self) -> Array:
-        """Matrix (m, n) [1] that maps pressures of the points to pressures of the friction patches."""
+        """Matrix (m, n) [1] that maps the pressures of n contact points to the pressures of m patches."""
         return pressure_transfer(self.points, self.patches)
 
-    def patch_approach(self, approach: Array) -> Array:
-        """Patch approach (m) [m] with the normal force transferred from points at approaches (n) [m].
-
+    def patch_approach(self, point_approach: Array) -> Array:
+        """Approaches (m) [m] of the m patches, from the pressures that the contact points transfer to them.
         If all points of a patch are open: the approach of the nearest point.
+
+        point_approach : (n) [m] of the n contact points
         """
-        p = self.pressure_transfer @ self.pressure_curve.derivatives(approach, 0)[0]
-        nearest = np.max(np.where(self.pressure_transfer > 0.0, approach, -np.inf), axis=1)
+        p = self.pressure_transfer @ self.pressure_curve.derivatives(point_approach, 0)[0]
+        nearest = np.max(np.where(self.pressure_transfer > 0.0, point_approach, -np.inf), axis=1)
         return np.where(
             p > 0.0, self.pressure_curve.inverse(p), np.minimum(nearest, self.pressure_curve.displacement[0])
         )
 
-    def preloaded_approach(self, joint: AnyBoltedJoint, preload: float, moment: float) -> Array:
+    def preloaded_approach(
+        self, joint_parameters: AnyBoltedJoint, preload: float, bending_moment: float
+    ) -> Array:
         """Approach (n) [m] of the points under a preload [N] of each bolt and a moment [N.m]."""
-        return self.pressure_curve.inverse(preload_pressure(joint, self.points, preload, moment))
+        return self.pressure_curve.inverse(
+            preload_pressure(joint_parameters, self.points, preload, bending_moment)
+        )
 
-    def preload_state(self, joint: AnyBoltedJoint, preload: float, moment: float) -> PreloadState:
+    def preload_state(
+        self, joint_parameters: AnyBoltedJoint, preload: float, bending_moment: float
+    ) -> PreloadState:
         """Approach and pressure of the contact before motion, under preload [N] per bolt and moment [N.m]."""
-        approach = self.preloaded_approach(joint, preload, moment)
+        approach = self.preloaded_approach(joint_parameters, preload, bending_moment)
         if self.has_elastic_members:
             patch_approach = self.patch_approach(approach)
         else:
             patch_approach = self.pressure_curve.inverse(
-                preload_pressure(joint, self.patches, preload, moment)
+                preload_pressure(joint_parameters, self.patches, preload, bending_moment)
             )
         return PreloadState(approach, self.pressure_curve.derivatives(approach, 0)[0], patch_approach)
 
@@ -133,20 +141,20 @@ def force_transfer(contact_points: PressureDistribution, patches: FrictionPatche
     square = np.sum((patches.position[:, None] - contact_points.position) ** 2, axis=2)
     nearest = np.min(square, axis=0)
     point_force, patch_force = (
-        nodes.area_share * (nodes.preload_pressure_ratio + ADDED_OVER_MEAN_PRESSURE)
+        nodes.area_share * (nodes.preload_pressure_ratio + TRANSFER_PRESSURE_OFFSET_OVER_MEAN)
         for nodes in (contact_points, patches)
     )
     width = np.maximum(point_force @ nearest / np.sum(point_force), np.finfo(float).tiny)
-    kernel = np.exp(-np.minimum((square - nearest) / width, MAX_OVER_MEAN_SQUARE_DISTANCE))
+    kernel = np.exp(-np.minimum((square - nearest) / width, MAX_TRANSFER_SQUARE_DISTANCE_OVER_MEAN))
     scale = np.ones_like(patch_force)
     for _ in range(2):
         for _ in range(SINKHORN_ITERATIONS):
             share = scale[:, None] * kernel
             share = share / np.sum(share, axis=0)
             scale = scale * patch_force / (share @ point_force)
-        least = np.maximum(np.sort(share, axis=0)[-MAX_PATCHES_PER_POINT:][0], MIN_TRANSFER_SHARE)
+        least = np.maximum(np.sort(share, axis=0)[-MAX_PATCHES_PER_POINT:][0], MIN_FORCE_TRANSFER_SHARE)
         kernel = np.where((share >= least) | (share == np.max(share, axis=1, keepdims=True)), kernel, 0.0)
-    rounded = np.maximum(np.round(share, TRANSFER_DECIMALS), 10.0**-TRANSFER_DECIMALS)
+    rounded = np.maximum(np.round(share, FORCE_TRANSFER_DECIMALS), 10.0**-FORCE_TRANSFER_DECIMALS)
     return np.asarray(np.where(kernel > 0.0, rounded, 0.0))
 
 
@@ -171,7 +179,7 @@ def elastic_shear(
 
     friction_limit       : l [Pa], mu times the pressure at tightening; the traction t u/R tends to l
     stiffness_ratio      : rho = K_T/K_N [1]
-    pressure_derivatives : pressure p [Pa] over the approach, and its first three derivatives k, k', k''
+    pressure_derivatives : pressure p [Pa], and its derivatives k, k', k'' with respect to the approach
     u_x, u_y             : tangential displacement [m]; u is its magnitude
 
     Returns the traction along x and y [Pa], its derivatives xx, xy, yy with respect to the displacement

@@ -10,13 +10,14 @@ S modal stiffness, p contact pressure, t traction, A area, k_b and e stiffness a
 is at least the negative preload of the bolt, see `BoltSprings`.
 
 Newton's method takes the part of H (below) for a as its first Jacobian, and corrects it by Broyden's update.
-It computes J after an iteration that reduces the residual too little (JACOBIAN_REUSE_RESIDUAL_DECREASE), and
-after a correction that the line search shortens or drops. A load step that does not converge is divided: q is
+It computes J after an iteration that reduces the residual too little (see
+MAX_RESIDUAL_RATIO_FOR_JACOBIAN_REUSE), and after a correction that the line search shortens or drops. A load
+step that does not converge is divided: q is
 then prescribed at step fractions between 0 (start of the load step) and 1 (end). The fractions only lead a to
 the solution: friction always gets one straight increment from the start of the load step to the trial state,
 so its history does not contain them. Shapes: n points, m patches, b bolts, k modes.
 
-Five derivatives of forces occur, in this module and in the C code under the same names:
+Five derivatives of forces occur in this module. Where the C code has them, they have the same names:
 
 - tangent stiffness H (6 + k, 6 + k): of the assembly with respect to q and a, at fixed friction limits,
   symmetric. `compliances.py` condenses it to q, for outputs; the equilibrium does not need the result.
@@ -45,42 +46,43 @@ from .contact import Contact, NormalState, PreloadState
 from .friction import FrictionUpdate
 from .kinematics import opening_jacobian, rigid_opening, tangential_displacement, tangential_jacobian
 
-RELATIVE_TOLERANCE = 1e-13
-"""Residual over the sum of all forces [1] that counts as equilibrium: the round-off of the sum. The load at
-which the contact closes is part of the sum: all other forces vanish if the joint is open."""
-RIGID_OPENING_FORCE_FACTOR = 0.02
-"""Factor on the force by rigid-body opening in the sum of RELATIVE_TOLERANCE [1]: modal opening cancels
-nearly all of this force."""
+RELATIVE_RESIDUAL_TOLERANCE = 1e-13
+"""Residual over the sum of all forces [1] that counts as equilibrium: the round-off of the sum. The force at
+which the closing of the contact ends is part of the sum: all other forces vanish if the joint is open."""
+RIGID_OPENING_WEIGHT_IN_TOLERANCE = 0.02
+"""Share [1] of a force that counts in the sum of RELATIVE_RESIDUAL_TOLERANCE: contact stiffness times the
+largest opening by rigid motion. The deformation of the members nearly cancels this force."""
 INTERMEDIATE_TOLERANCE_FACTOR = 1e7
 """Tolerance inside a divided load step over the tolerance at its end [1]."""
-MAX_NEWTON_ITERATIONS, MAX_LINE_SEARCH = 16, 6
+MAX_NEWTON_ITERATIONS, MAX_LINE_SEARCH_TRIALS = 16, 6
 """Newton iterations at one step fraction [1], and trial lengths in each iteration [1]."""
-JACOBIAN_REUSE_RESIDUAL_DECREASE = 0.03
+MAX_RESIDUAL_RATIO_FOR_JACOBIAN_REUSE = 0.03
 """Residual after an iteration over the residual before [1], below which J is reused."""
 MAX_FINAL_OVER_INITIAL_ENERGY_SLOPE = 0.5
 """Energy slope at the end of a correction over its initial size [1], above which the step is too long."""
-MIN_OVER_PREVIOUS_CORRECTION_LENGTH = 0.1
-"""Smallest length of a shortened correction, over the length of the previous trial [1]."""
-MIN_LOAD_STEP = 1e-4
-"""Increment of the step fraction [1] below which a load step is given up."""
-TRACTION_DIFFERENCE_STEP = 1e-7
-"""Step of finite differences of the tractions, over the largest patch approach at tightening [1].
+MIN_SHORTENING_FACTOR = 0.1
+"""Smallest factor [1] by which the line search shortens a correction of the modal coordinates at once."""
+MIN_STEP_FRACTION_INCREMENT = 1e-4
+"""Increment of the step fraction [1] below which Newton's method gives up a load step. The step fraction runs
+from 0 at the start of the load step to 1 at its end."""
+TRACTION_FINITE_DIFFERENCE_STEP = 1e-7
+"""Displacement step of the finite differences of the tractions, over the largest patch approach after
+tightening, counted from first contact [1].
 
-Without preload all patches are open: then over the approach at which the contact has closed, if that is
-larger."""
+Without preload all patches are open: then over the approach from first contact to the end of the closing."""
 
 
 @dataclass(frozen=True, slots=True)
 class TrialState:
-    """Contact, friction and residual at trial modal coordinates.
-
+    """Contact, friction and residual at trial modal coordinates: k modes, m friction patches, b bolts.
     modal_coordinates    : a (k) [m]
     normal_state         : contact of points and patches
     tangential_increment : displacement (m, 3) [m] of the patches since the start of the load step
     friction_update      : tractions, tangent and history variables of the patches
     elongation           : (b) [m] of the bolts since tightening
     residual             : r (k) [N]
-    residual_tolerance   : [N] the state is in equilibrium if no entry of r is larger, see RELATIVE_TOLERANCE
+    residual_tolerance   : [N] the state is in equilibrium if no entry of r is larger, see
+                           RELATIVE_RESIDUAL_TOLERANCE
     """
 
     modal_coordinates: Array
@@ -113,32 +115,32 @@ class JointAssembly:
 
     @cached_property
     def point_area(self) -> Array:
-        """Nominal areas (n) [m2] of the points."""
+        """Nominal areas (n) [m2] of the n contact points."""
         return self.nominal_area * self.contact.points.area_share
 
     @cached_property
     def patch_area(self) -> Array:
-        """Nominal areas (m) [m2] of the patches."""
+        """Nominal areas (m) [m2] of the m friction patches."""
         return self.nominal_area * self.contact.patches.area_share
 
     @cached_property
-    def opening_jacobian(self) -> Array:
-        """Jacobian G (n, 6 + k) [1, m] of the opening of the points."""
-        return np.hstack([opening_jacobian(self.contact.points.position), self.modes.opening])
+    def full_opening_jacobian(self) -> Array:
+        """Derivatives G (n, 6 + k) [1, m] of the opening of the n contact points with respect to q and a."""
+        return np.hstack([opening_jacobian(self.contact.points.position), self.modes.point_opening])
 
     @cached_property
-    def tangential_jacobian(self) -> Array:
-        """Jacobian G (3, m, 6 + k) [1, m] of the tangential displacement of the patches.
+    def full_tangential_jacobian(self) -> Array:
+        """Derivatives G (3, m, 6 + k) [1, m] of the tangential displacement of m patches by q and a.
 
-        Along x, along y, and rotation times the patch radius; by the relative displacement q (6) and the
-        modal coordinates a (k).
+        Displacement along x, along y, and rotation times the patch radius; derivatives with respect to the
+        relative displacement q (6) and the modal coordinates a (k).
         """
         rigid = tangential_jacobian(self.contact.patches)
         return np.concatenate([rigid, self.modes.patch_displacement], axis=-1)
 
     @cached_property
-    def elongation_jacobian(self) -> Array:
-        """Jacobian G (b, 6 + k) [1, m] of the elongation of the bolts."""
+    def full_elongation_jacobian(self) -> Array:
+        """Derivatives G (b, 6 + k) [1, m] of the elongation of the b bolts with respect to q and a."""
         return np.hstack([opening_jacobian(self.bolts.position), self.modes.bolt_elongation])
 
     def evaluate_normal(
@@ -146,7 +148,7 @@ class JointAssembly:
     ) -> NormalState:
         """Approach and pressure of the contact at displacement q (6) and modal coordinates a (k) [m]."""
         return self.contact.evaluate_normal(
-            preload_state, relative_displacement, self.modes.opening @ modal_coordinates
+            preload_state, relative_displacement, self.modes.point_opening @ modal_coordinates
         )
 
     def tangential_displacement(self, relative_displacement: Array, modal_coordinates: Array) -> Array:
@@ -170,8 +172,8 @@ class JointAssembly:
         pressure_change, bolt_force_change : (n) [Pa], (b) [N] since tightening
         """
         modes = self.modes
-        r = modes.stiffness * modal_coordinates + modes.bolt_elongation.T @ bolt_force_change
-        r = r - modes.opening.T @ (self.point_area * pressure_change)
+        r = modes.modal_stiffness * modal_coordinates + modes.bolt_elongation.T @ bolt_force_change
+        r = r - modes.point_opening.T @ (self.point_area * pressure_change)
         for axis in range(3):
             r = r + modes.patch_displacement[axis].T @ (self.patch_area * traction[:, axis])
         return np.asarray(r)
@@ -182,22 +184,28 @@ class JointAssembly:
         """Tangent stiffness H (6 + k, 6 + k) [N/m, N, N.m] with respect to q and a, at fixed friction limits.
 
         contact_stiffness     : (n) [Pa/m] of the points
-        friction_tangent      : (m, 6) [Pa/m] of the patches: xx, xy, yy, xt, yt, tt
+        friction_tangent      : (m, 6) [Pa/m] of the patches: xx, xy, yy, xr, yr, rr; r: rotation of a patch
         active_bolt_stiffness : (b) [N/m] of the bolts
         """
-        normal, (u, v, w), bolts = self.opening_jacobian, self.tangential_jacobian, self.elongation_jacobian
-        xx, xy, yy, xt, yt, tt = (self.patch_area * friction_tangent.T)[:, :, None]
+        normal, (u, v, w), bolts = (
+            self.full_opening_jacobian,
+            self.full_tangential_jacobian,
+            self.full_elongation_jacobian,
+        )
+        xx, xy, yy, xr, yr, rr = (self.patch_area * friction_tangent.T)[:, :, None]
         H = normal.T @ ((self.point_area * contact_stiffness)[:, None] * normal)
         H += (active_bolt_stiffness * bolts.T) @ bolts
-        H += u.T @ (xx * u + xy * v + xt * w) + v.T @ (xy * u + yy * v + yt * w)
-        H += w.T @ (xt * u + yt * v + tt * w)
-        H[6:, 6:] += np.diag(self.modes.stiffness)
+        H += u.T @ (xx * u + xy * v + xr * w) + v.T @ (xy * u + yy * v + yr * w)
+        H += w.T @ (xr * u + yr * v + rr * w)
+        H[6:, 6:] += np.diag(self.modes.modal_stiffness)
         return np.asarray(H)
 
 
 @dataclass(frozen=True, slots=True)
 class LoadStep:
-    """Straight path of the relative displacement, from the last equilibrium to the prescribed inputs.
+    """Straight path of the relative displacement q, from the last equilibrium to the prescribed inputs.
+
+    Preload, bending moment and temperature have their values at the end from the start of the step on.
 
     preload_state, preload_bolt_force    : contact, and force (b) [N] of the bolts, at tightening
     start_displacement, end_displacement : q (6) [m, rad] at step fractions 0 and 1
@@ -236,6 +244,7 @@ class LoadStep:
         friction = self.update_friction(normal.patch_approach, increment)
         elongation = assembly.elongation(relative_displacement, modal_coordinates)
         traction, preload_pressure = friction.traction, self.preload_state.pressure
+        # without bolts_per_position: elastic members state the position of every bolt, so it is 1
         bolt_force_change = bolts.stiffness * (
             elongation + bolts.head_gap(self.preload_bolt_force, elongation)
         )
@@ -246,9 +255,9 @@ class LoadStep:
         force_sum = assembly.point_area @ (normal.pressure + preload_pressure)
         force_sum += np.sum(np.abs(bolt_force_change)) + np.sum(assembly.patch_area @ np.abs(traction))
         rigid = np.max(np.abs(rigid_opening(assembly.contact.points.position, relative_displacement)))
-        force_sum += (assembly.point_area @ normal.stiffness) * rigid * RIGID_OPENING_FORCE_FACTOR
-        force_sum += assembly.nominal_area * assembly.contact.pressure_curve.closing_end_load
-        tolerance = float(RELATIVE_TOLERANCE * force_sum)
+        force_sum += (assembly.point_area @ normal.stiffness) * rigid * RIGID_OPENING_WEIGHT_IN_TOLERANCE
+        force_sum += assembly.nominal_area * assembly.contact.pressure_curve.closing_end_pressure
+        tolerance = float(RELATIVE_RESIDUAL_TOLERANCE * force_sum)
         return TrialState(modal_coordinates, normal, increment, friction, elongation, residual, tolerance)
 
     def residual_jacobian(self, trial_state: TrialState) -> Array:
@@ -258,14 +267,14 @@ class LoadStep:
             self.preload_bolt_force, trial_state.elongation
         )
         J = (
-            np.diag(modes.stiffness)
+            np.diag(modes.modal_stiffness)
             + (active_bolt_stiffness * modes.bolt_elongation.T) @ modes.bolt_elongation
         )
-        J += modes.opening.T @ (
-            (assembly.point_area * trial_state.normal_state.stiffness)[:, None] * modes.opening
+        J += modes.point_opening.T @ (
+            (assembly.point_area * trial_state.normal_state.stiffness)[:, None] * modes.point_opening
         )
         motions = np.concatenate(
-            [modes.patch_displacement, self.modal_opening(trial_state.normal_state)[None]]
+            [modes.patch_displacement, self.patch_opening_jacobian(trial_state.normal_state)[None]]
         )
         derivatives = self.traction_derivatives(trial_state)
         for axis in range(3):
@@ -274,22 +283,25 @@ class LoadStep:
             )
         return np.asarray(J)
 
-    def modal_opening(self, normal_state: NormalState) -> Array:
-        """Derivative (m, k) [1] of the opening of the patches with respect to the modal coordinates."""
+    def patch_opening_jacobian(self, normal_state: NormalState) -> Array:
+        """Derivative (m, k) [1] of the patch openings with respect to the modal coordinates a (k).
+
+        The opening of a patch changes its pressure as much as the points that transfer pressure to it do.
+        """
         contact = self.assembly.contact
         stiffness = contact.pressure_curve.derivatives(normal_state.patch_approach, 1)[1][:, None]
         closed = stiffness > 0.0
-        pressure = (contact.pressure_transfer * normal_state.stiffness) @ self.assembly.modes.opening
+        pressure = (contact.pressure_transfer * normal_state.stiffness) @ self.assembly.modes.point_opening
         return np.asarray(np.where(closed, pressure / np.where(closed, stiffness, 1.0), 0.0))
 
     def traction_derivatives(self, trial_state: TrialState) -> Array:
         """Derivatives (m, 3, 4) [Pa/m] of the friction tractions, by finite differences.
 
-        Three tractions of a patch (along x, along y, torsion about its centre) by the three tangential
-        displacements and the opening.
+        For each of m patches: its three tractions (along x, along y, around its centre), differentiated with
+        respect to the three tangential displacements and the opening.
         """
         first = self.assembly.contact.pressure_curve.displacement[0]
-        size = TRACTION_DIFFERENCE_STEP * float(
+        size = TRACTION_FINITE_DIFFERENCE_STEP * float(
             np.max(np.maximum(self.preload_state.patch_approach, 0.0) - first)
         )
         traction, columns = trial_state.friction_update.traction, []
@@ -303,11 +315,11 @@ class LoadStep:
 class ModalPredictor(NamedTuple):
     """Modal coordinates (k) [m] at the end of a load step, by the tangent stiffness H at its start.
 
-    modal_stiffness : (k, k) [N/m] part of H for the modal coordinates, the first J of Newton's method
+    modal_tangent_stiffness : (k, k) [N/m] part of H for the modal coordinates, the first J of Newton's method
     """
 
     modal_coordinates: Array
-    modal_stiffness: Array
+    modal_tangent_stiffness: Array
 
 
 def solve_equilibrium(load_step: LoadStep) -> TrialState:
@@ -321,14 +333,15 @@ def solve_equilibrium(load_step: LoadStep) -> TrialState:
     while True:
         target = min(step_fraction + increment, 1.0)
         state, converged = solve_newton(
-            load_step, target, a + (target - step_fraction) * rate, predictor.modal_stiffness
+            load_step, target, a + (target - step_fraction) * rate, predictor.modal_tangent_stiffness
         )
         if not converged:
             increment *= 0.5
-            if increment < MIN_LOAD_STEP:
+            if increment < MIN_STEP_FRACTION_INCREMENT:
                 raise ValueError(
-                    f"{load_step.input_summary}: no equilibrium of the joint was found beyond a fraction "
-                    f"of {step_fraction:.3g} of the way, the residual is {state.residual_norm:.2g} N"
+                    f"{load_step.input_summary}: no equilibrium of the joint was found: the solution stopped "
+                    f"after a fraction {step_fraction:.3g} of the load step, with a residual force of "
+                    f"{state.residual_norm:.2g} N; check the size of the inputs, and [bodies]"
                 )
         elif target == 1.0:
             return state
@@ -349,33 +362,35 @@ def predict_by_tangent(load_step: LoadStep) -> ModalPredictor:
     )
     H = assembly.tangent_stiffness(normal.stiffness, load_step.friction_tangent, active_bolt_stiffness)
     try:
-        change = np.linalg.solve(
+        negative_change = np.linalg.solve(
             H[6:, 6:], H[6:, :6] @ (load_step.end_displacement - load_step.start_displacement)
         )
-    except np.linalg.LinAlgError:
-        reason = (
-            f"{load_step.input_summary}: no equilibrium of the joint was found beyond a fraction of 0 of "
-            "the way"
-        )
-        raise ValueError(f"{reason}, the tangent stiffness is singular there") from None
-    return ModalPredictor(np.asarray(a - change), H[6:, 6:])
+    except np.linalg.LinAlgError:  # by round-off only: without it, H is positive definite in a
+        raise ValueError(
+            f"{load_step.input_summary}: no equilibrium of the joint was found: the tangent stiffness at the "
+            "start of the load step is singular; check [bodies]"
+        ) from None
+    return ModalPredictor(np.asarray(a - negative_change), H[6:, 6:])
 
 
 def solve_newton(
-    load_step: LoadStep, step_fraction: float, modal_coordinates: Array, residual_jacobian: Array
+    load_step: LoadStep, step_fraction: float, modal_coordinates: Array, first_jacobian: Array
 ) -> tuple[TrialState, bool]:
     """Newton's method for the modal coordinates at a step fraction [1] of a load step.
 
     Returns the last trial state, and whether the method converged.
 
-    The method starts at modal coordinates a (k) [m] with the Jacobian (k, k) [N/m] of an earlier state: in a
-    divided load step, too, that at the start of the load step. The Jacobian is reused, with Broyden's update,
-    after a full correction that reduces the residual below JACOBIAN_REUSE_RESIDUAL_DECREASE; otherwise J is
-    computed.
+    modal_coordinates : (k) [m] initial values
+    first_jacobian    : (k, k) [N/m] Jacobian of the first iteration: part of H for a at the start of the load
+                        step, also if the step is divided
+
+    The Jacobian is reused, with Broyden's update, after a full correction that reduces the residual to less
+    than MAX_RESIDUAL_RATIO_FOR_JACOBIAN_REUSE of the last one; otherwise it is computed.
     """
     q = load_step.displacement_at(step_fraction)
     tolerance_factor = 1.0 if step_fraction == 1.0 else INTERMEDIATE_TOLERANCE_FACTOR
-    state, last_norm, jacobian_is_current = load_step.evaluate_trial(q, modal_coordinates), np.inf, False
+    state, jacobian = load_step.evaluate_trial(q, modal_coordinates), first_jacobian
+    jacobian_is_current, last_norm = False, np.inf  # inf: the first iteration uses first_jacobian
     corrections: list[Array] = []  # since J was computed
     for iteration in range(MAX_NEWTON_ITERATIONS + 1):
         norm = state.residual_norm
@@ -383,17 +398,15 @@ def solve_newton(
             return state, True
         if iteration == MAX_NEWTON_ITERATIONS:
             break
-        if not norm < JACOBIAN_REUSE_RESIDUAL_DECREASE * last_norm:
-            residual_jacobian, corrections, jacobian_is_current = load_step.residual_jacobian(state), [], True
+        if not norm < MAX_RESIDUAL_RATIO_FOR_JACOBIAN_REUSE * last_norm:  # also if the norm is NaN
+            jacobian, corrections, jacobian_is_current = load_step.residual_jacobian(state), [], True
         try:
-            correction = apply_broyden(
-                np.asarray(-np.linalg.solve(residual_jacobian, state.residual)), corrections
-            )
+            correction = apply_broyden(np.asarray(-np.linalg.solve(jacobian, state.residual)), corrections)
         except np.linalg.LinAlgError:  # J is singular
             break
         corrections.append(correction)
         state, is_full = search_line(load_step, q, state, correction, jacobian_is_current)
-        last_norm = norm if is_full else 0.0  # 0: no residual is below it, so J is computed
+        last_norm = norm if is_full else 0.0  # 0: the next iteration computes J, as no norm is below 0
         jacobian_is_current = False
     return state, False
 
@@ -402,41 +415,41 @@ def search_line(
     load_step: LoadStep,
     relative_displacement: Array,
     trial_state: TrialState,
-    correction: Array,
+    newton_correction: Array,
     jacobian_is_current: bool,
 ) -> tuple[TrialState, bool]:
     """Trial state after a correction (k) [m] of the modal coordinates, shortened if it overshoots.
 
-    Returns also whether the correction was applied in full.
+    Returns also whether the correction was applied in full: False if it was shortened or dropped.
 
     The energy slope [J] is residual . correction: where friction sticks, the derivative of the potential
     energy along the correction. With slip there is no potential, but the slope still vanishes at the
     solution. If it exceeds MAX_FINAL_OVER_INITIAL_ENERGY_SLOPE times its first value at the end, the
     correction is shortened by regula falsi, or dropped if the Jacobian was computed at an earlier state. If
-    the first value is positive, too, regula falsi has no zero: the correction is shortened to
-    MIN_OVER_PREVIOUS_CORRECTION_LENGTH.
+    the first value is positive, too, regula falsi has no zero: the correction is multiplied by
+    MIN_SHORTENING_FACTOR. After MAX_LINE_SEARCH_TRIALS the last trial is returned, though it is too long.
     """
-    length, energy_slope_0 = 1.0, float(trial_state.residual @ correction)
-    for shortenings in range(MAX_LINE_SEARCH):
+    length, energy_slope_0 = 1.0, float(trial_state.residual @ newton_correction)
+    for shortenings in range(MAX_LINE_SEARCH_TRIALS):
         trial = load_step.evaluate_trial(
-            relative_displacement, trial_state.modal_coordinates + length * correction
+            relative_displacement, trial_state.modal_coordinates + length * newton_correction
         )
-        energy_slope_1 = float(trial.residual @ correction)
+        energy_slope_1 = float(trial.residual @ newton_correction)
         if not energy_slope_1 > MAX_FINAL_OVER_INITIAL_ENERGY_SLOPE * abs(energy_slope_0):
             return trial, shortenings == 0
         if not jacobian_is_current:
             return trial_state, False
         has_zero = energy_slope_0 < 0.0 < energy_slope_1
         zero = energy_slope_0 / (energy_slope_0 - energy_slope_1) if has_zero else 0.0
-        length *= max(zero, MIN_OVER_PREVIOUS_CORRECTION_LENGTH)
+        length *= max(zero, MIN_SHORTENING_FACTOR)
     return trial, False
 
 
-def apply_broyden(correction: Array, earlier_corrections: Sequence[Array]) -> Array:
+def apply_broyden(newton_correction: Array, earlier_corrections: Sequence[Array]) -> Array:
     """Improve a Newton correction (k) [m] by Broyden's good update of J (Kelley 1995, chapter 7)."""
     for last, following in pairwise(earlier_corrections):
-        correction = correction + (last @ correction) / (last @ last) * following
+        newton_correction = newton_correction + (last @ newton_correction) / (last @ last) * following
     if earlier_corrections:
         last = earlier_corrections[-1]
-        correction = correction / (1.0 - last @ correction / (last @ last))
-    return np.asarray(correction)
+        newton_correction = newton_correction / (1.0 - last @ newton_correction / (last @ last))
+    return np.asarray(newton_correction)

@@ -31,7 +31,7 @@ from ...quantity import (
 
 MAX_MODES = 16
 """Largest number of modes of the members [1]."""
-MODAL_ENTRIES = ("opening", "patch_x", "patch_y", "patch_around", "stretch")
+MODAL_ENTRY_NAMES = ("opening", "patch_x", "patch_y", "patch_around", "stretch")
 """Entries of the section [bodies] of a parameter file with the displacements of the members' modes."""
 ELASTIC_SIDE_REQUIREMENTS = {
     "memory": "elastic sides need friction with memory",
@@ -129,12 +129,12 @@ class ElasticBodies:
         doc="surfaces of the bodies that move rigidly with the connected parts",
     )
     thickness: tuple[float, ...] = series_field(
-        "m", "thickness of side 1 and 2 at the bolts, for pictures", gt=0.0, optional=True
+        "m", "thickness of side 1 and 2 at the bolts, for pictures", gt=0.0, is_optional=True
     )
     outline: tuple[float, ...] = series_field(
         "m",
         "smallest x and y, largest x and y of the contact, from its centroid, for pictures",
-        optional=True,
+        is_optional=True,
     )
     hole_diameter: float = quantity_field("m", "clearance hole, for pictures", ge=0.0, default=0.0)
     head_diameter: float = quantity_field(
@@ -148,9 +148,9 @@ class ElasticBodies:
         check_fields(self)
         modes, patches, bolts = len(self.stiffness), len(self.x), len(self.bolt_x)
         if modes > MAX_MODES:
-            raise ValueError(f"bodies.stiffness has {modes} numbers, expected at most {MAX_MODES}")
+            raise ValueError(f"bodies.stiffness has {modes} deformation modes, expected at most {MAX_MODES}")
         counts = {"y": patches, "bolt_y": bolts, "stretch": bolts * modes}
-        counts |= {name: patches * modes for name in MODAL_ENTRIES if name.startswith("patch_")}
+        counts |= {name: patches * modes for name in MODAL_ENTRY_NAMES if name.startswith("patch_")}
         counts["opening"] = modes * max(len(self.opening) // modes, 1)
         counts |= {name: n for name, n in (("thickness", 2), ("outline", 4)) if getattr(self, name)}
         for name, count in counts.items():
@@ -173,8 +173,8 @@ class BoltParameters:
     bolt_stiffness: float = quantity_field("N/m", "stiffness of each bolt", ge=0.0, default=0.0)
     plate_stiffness: float = quantity_field(
         "N/m",
-        "stiffness of the plates around each bolt, 1/delta_P of VDI 2230 without washers, for the change of "
-        "the preload with the temperature; 0: no change",
+        "stiffness of the plates around each bolt, 1/delta_P of VDI 2230 without washers, for the change "
+        "of the preload with the temperature; 0: no change",
         ge=0.0,
         default=0.0,
     )
@@ -188,7 +188,7 @@ class BoltParameters:
     sides: str = choice_field(
         "rigid",
         "elastic",
-        doc="rigid: the interface alone; elastic: the complete joint between its attachments, with [bodies]",
+        doc="rigid: interface and bolts between rigid members; elastic: also the members, with [bodies]",
     )
     bodies: RigidBodies | ElasticBodies = group_field(
         "compliance of the members between their attachments", rigid=RigidBodies, bodies=ElasticBodies
@@ -238,7 +238,7 @@ class BoltParameters:
         seats = float(len(self.bodies.bolt_x))
         return [
             ParameterLimit(
-                "n_bolts", Interval.from_bounds(ge=seats, le=seats), "the bolts that [bodies] has"
+                "n_bolts", Interval.from_bounds(ge=seats, le=seats), "number of bolts in [bodies]"
             ),
             rows,
         ]
@@ -254,7 +254,7 @@ class BoltedJointParameters(BoltParameters, Zhao2018):
 
 
 @dataclass(frozen=True, kw_only=True)
-class _WithoutPlasticWork(BoltParameters):
+class _BoltedJointWithoutPlasticWork(BoltParameters):
     """Parameters of the bolted joint with a law that has no plastic work."""
 
     plastic_damping: ClassVar[bool] = False
@@ -265,12 +265,12 @@ class _WithoutPlasticWork(BoltParameters):
 
 
 @dataclass(frozen=True, kw_only=True)
-class RoughBoltedJointParameters(_WithoutPlasticWork, RoughnessLaw):
+class RoughBoltedJointParameters(_BoltedJointWithoutPlasticWork, RoughnessLaw):
     """Parameters of the bolted joint with the law `roughness`."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class TableBoltedJointParameters(_WithoutPlasticWork, TableLaw):
+class TableBoltedJointParameters(_BoltedJointWithoutPlasticWork, TableLaw):
     """Parameters of the bolted joint with the law `table`."""
 
 
@@ -278,67 +278,76 @@ AnyBoltedJoint: TypeAlias = BoltedJointParameters | RoughBoltedJointParameters |
 """Parameter set of a bolted joint with any interface law."""
 
 
-def with_rigid_members(joint: AnyBoltedJoint) -> AnyBoltedJoint:
+def with_rigid_members(joint_parameters: AnyBoltedJoint) -> AnyBoltedJoint:
     """Copy of a joint with rigid members: only the interface and the bolts deform."""
-    return replace(joint, sides="rigid") if joint.has_elastic_members else joint
+    return (
+        replace(joint_parameters, sides="rigid") if joint_parameters.has_elastic_members else joint_parameters
+    )
 
 
-def get_bolted_frame(joint: AnyBoltedJoint) -> BoltedFrame:
+def get_bolted_frame(joint_parameters: AnyBoltedJoint) -> BoltedFrame:
     """Bolted frame of a joint: section [pattern] of its parameter file.
 
     Raises ValueError if the joint has a plate or a nodal field instead.
     """
-    if isinstance(joint.pattern, BoltedFrame):
-        return joint.pattern
-    if isinstance(joint.pattern, BoltedPlate):
-        has = f"[plate], a plate with {len(joint.pattern.x)} bolts"
+    if isinstance(joint_parameters.pattern, BoltedFrame):
+        return joint_parameters.pattern
+    if isinstance(joint_parameters.pattern, BoltedPlate):
+        has = f"[plate], a plate with {len(joint_parameters.pattern.x)} bolts"
     else:
-        has = f"[field], a nodal field of {len(joint.pattern.share)} points"
+        has = f"[field], a nodal field of {len(joint_parameters.pattern.share)} points"
     raise ValueError(f"the joint has {has}; expected [pattern], a frame of bolts")
 
 
-AREA_TOLERANCE = 0.01
+RELATIVE_AREA_TOLERANCE = 0.01
 """Largest difference of A_0 from the area that the plate or the frame has without its holes [1]."""
 ROW_DISTANCE_TOLERANCE = 1e-3
 """Largest relative difference [1] between row_distance and the distance of the bolt rows."""
 
 
-def find_contradictions(joint: AnyBoltedJoint) -> Iterator[str]:
+def find_contradictions(joint_parameters: AnyBoltedJoint) -> Iterator[str]:
     """Yield one line for each parameter that contradicts the bolts of a parameter file."""
-    if isinstance(joint.pattern, NodalField):
+    if isinstance(joint_parameters.pattern, NodalField):
         return
-    section, pattern = ("plate" if isinstance(joint.pattern, BoltedPlate) else "pattern"), joint.pattern
-    count, (row_bolts, row_distance) = len(pattern.bolts_from_middle), pattern.equivalent_bolt_rows
-    if joint.n_bolts != count:
-        yield f"n_bolts = {joint.n_bolts:g} contradicts [{section}], which has {count} bolts"
-    if abs(joint.A_0 / pattern.area - 1.0) > AREA_TOLERANCE:
+    section, pattern = (
+        ("plate" if isinstance(joint_parameters.pattern, BoltedPlate) else "pattern"),
+        joint_parameters.pattern,
+    )
+    count, (row_bolts, row_distance) = len(pattern.bolt_positions_from_middle), pattern.equivalent_bolt_rows
+    if joint_parameters.n_bolts != count:
+        yield f"n_bolts = {joint_parameters.n_bolts:g} contradicts [{section}], which has {count} bolts"
+    if abs(joint_parameters.A_0 / pattern.area - 1.0) > RELATIVE_AREA_TOLERANCE:
         yield (
-            f"A_0 = {joint.A_0:g} m2 contradicts [{section}], which has {pattern.area:.6g} m2 without its "
-            f"holes; allowed is within {AREA_TOLERANCE:.0%}"
+            f"A_0 = {joint_parameters.A_0:g} m2 contradicts [{section}], whose area without the holes is "
+            f"{pattern.area:.6g} m2; allowed is a difference of {RELATIVE_AREA_TOLERANCE:.0%}"
         )
-    if joint.row_bolts != row_bolts:
-        yield f"row_bolts = {joint.row_bolts:g} contradicts [{section}], whose rows have {row_bolts:g}"
-    if abs(joint.row_distance / row_distance - 1.0) > ROW_DISTANCE_TOLERANCE:
-        stated = f"row_distance = {joint.row_distance:g} m"
+    if joint_parameters.row_bolts != row_bolts:
+        stated = f"row_bolts = {joint_parameters.row_bolts:g}"
+        yield f"{stated} contradicts [{section}], whose rows have {row_bolts:g} each"
+    if abs(joint_parameters.row_distance / row_distance - 1.0) > ROW_DISTANCE_TOLERANCE:
+        stated = f"row_distance = {joint_parameters.row_distance:g} m"
         yield f"{stated} contradicts [{section}], where it is {row_distance:.6g} m"
 
 
 def preload_pressure(
-    joint: AnyBoltedJoint,
+    joint_parameters: AnyBoltedJoint,
     pressure_distribution: PressureDistribution | MergedDistribution,
     preload: ArrayLike,
-    moment: ArrayLike,
+    bending_moment: ArrayLike,
 ) -> Array:
-    """Node pressures (..., n) [Pa] of the tightened joint, preload [N] per bolt, moment [N.m] (...).
+    """Pressures (..., n) [Pa] of the n nodes of a tightened joint, 0 at open nodes.
 
-    The moment raises the bolt forces of the row y > 0 by M/(L_a N_b) and lowers those of the row
-    y < 0 (Zhao 2018, section 3); for other layouts see
-    `BoltedPlate.pressure_distribution`. Nodes with a negative sum are open.
+    A moment M raises each bolt force of the row y > 0 by M/(L_a N_b), and lowers the forces of the row y < 0
+    by the same amount (Zhao 2018, section 3), with the distance L_a of the rows and N_b bolts in each. For
+    other layouts see `BoltedPlate.pressure_distribution`.
+
+    preload        : (...) [N] of each bolt
+    bending_moment : (...) [N.m] about x
     """
-    force, bending = np.asarray(preload)[..., None], np.asarray(moment)[..., None]
+    force, bending = np.asarray(preload)[..., None], np.asarray(bending_moment)[..., None]
     return np.asarray(
         node_pressure(
-            joint,
+            joint_parameters,
             pressure_distribution.preload_pressure_ratio,
             pressure_distribution.moment_pressure_ratio,
             force,
@@ -348,66 +357,79 @@ def preload_pressure(
 
 
 def node_pressure(
-    joint: AnyBoltedJoint,
+    joint_parameters: AnyBoltedJoint,
     preload_pressure_ratio: Number,
     moment_pressure_ratio: Number,
     preload: Number,
-    moment: Number,
+    bending_moment: Number,
 ) -> Number:
     """Pressure [Pa] of a node under a preload [N] of each bolt and a moment [N.m]."""
     return superposed_pressure(
-        preload_pressure_ratio, moment_pressure_ratio, *bolt_pressures(joint, preload, moment)
+        preload_pressure_ratio,
+        moment_pressure_ratio,
+        *bolt_pressures(joint_parameters, preload, bending_moment),
     )
 
 
-def working_preload(joint: AnyBoltedJoint, preload: Number) -> Number:
+def working_preload(joint_parameters: AnyBoltedJoint, preload: Number) -> Number:
     """Working force (...) [N] of a bolt: preload (...) [N] minus the loss by embedding, at least 0.
 
     preload : at the present temperature, see `preload_at_temperature`
     """
-    return select(preload >= joint.embedding, preload - joint.embedding, 0.0 * preload)
+    return select(preload >= joint_parameters.embedding, preload - joint_parameters.embedding, 0.0 * preload)
 
 
-def thermal_mismatch(joint: AnyBoltedJoint, temperature: Number) -> Number:
-    """Free expansion (...) [m] of the clamped members minus free expansion of a bolt, at temperatures (...)
-    [K].
+def thermal_mismatch(joint_parameters: AnyBoltedJoint, temperature: Number) -> Number:
+    """Free thermal expansion (...) [m] of the clamped members minus that of a bolt.
 
     Washers expand as the bolt does.
+
+    temperature : (...) [K] of bolts and members
     """
     per_kelvin = sum(
-        (side.alpha - joint.bolt.alpha) * side.clamped_length for side in (joint.side1, joint.side2)
+        (side.alpha - joint_parameters.bolt.alpha) * side.clamped_length
+        for side in (joint_parameters.side1, joint_parameters.side2)
     )
     return per_kelvin * (temperature - TIGHTENING_TEMPERATURE)
 
 
-def preload_at_temperature(joint: AnyBoltedJoint, preload: Number, temperature: Number) -> Number:
+def preload_at_temperature(joint_parameters: AnyBoltedJoint, preload: Number, temperature: Number) -> Number:
     """Preload (...) [N] of a bolt at a temperature [K] of bolts and members: VDI 2230, section 5.4.2.
 
     preload : (...) [N] at tightening, at TIGHTENING_TEMPERATURE
 
-    The mismatch of the free lengths over the compliance of bolt and members, with constant moduli:
-    F = F_V + sum (alpha_i - alpha_bolt) l_i dT/(delta_S + delta_P). May be negative, see `working_preload`.
+    The mismatch of the free lengths divided by the compliance of bolt and members is added, with constant
+    moduli: F = F_V + sum (alpha_i - alpha_bolt) l_i dT/(delta_S + delta_P), with the preload F_V at
+    tightening, expansion coefficients alpha, clamped lengths l_i of the two members, temperature change dT,
+    compliances delta_S of the bolt and delta_P of the members. F may be negative, see `working_preload`.
     """
-    total = joint.bolt_stiffness + joint.plate_stiffness
+    total = joint_parameters.bolt_stiffness + joint_parameters.plate_stiffness
     are_springs = total > 0.0
-    product = joint.bolt_stiffness * joint.plate_stiffness
+    product = joint_parameters.bolt_stiffness * joint_parameters.plate_stiffness
     stiffness = select(are_springs, product / select(are_springs, total, 1.0), 0.0 * total)
-    return preload + stiffness * thermal_mismatch(joint, temperature)
+    return preload + stiffness * thermal_mismatch(joint_parameters, temperature)
 
 
-def slip_force(joint: AnyBoltedJoint, working_force: Number) -> Number:
-    """Shear force (...) [N] of gross slip, mu n F, under working forces (...) [N] of each bolt."""
-    return joint.mu * joint.n_bolts * working_force
+def slip_force(joint_parameters: AnyBoltedJoint, working_force: Number) -> Number:
+    """Shear force (...) [N] of gross slip: friction coefficient times the working force of all bolts.
+    working_force : (...) [N] of each bolt
+    """
+    return joint_parameters.mu * joint_parameters.n_bolts * working_force
 
 
-def bolt_pressures(joint: AnyBoltedJoint, preload: Number, moment: Number) -> tuple[Number, Number]:
+def bolt_pressures(
+    joint_parameters: AnyBoltedJoint, preload: Number, bending_moment: Number
+) -> tuple[Number, Number]:
     """Mean pressure [Pa] by the preload, and mean pressure [Pa] of a bolt row by the moment.
 
     A node with preload_pressure_ratio = 1 has the first pressure, one with moment_pressure_ratio = 1 the
     second.
     """
-    left = working_preload(joint, preload)
-    return left * joint.n_bolts / joint.A_0, moment / joint.row_distance / joint.A_0
+    left = working_preload(joint_parameters, preload)
+    return (
+        left * joint_parameters.n_bolts / joint_parameters.A_0,
+        bending_moment / joint_parameters.row_distance / joint_parameters.A_0,
+    )
 
 
 def superposed_pressure(
@@ -423,7 +445,12 @@ def superposed_pressure(
     return np.maximum(mean_pressure * preload_pressure_ratio + moment_pressure * moment_pressure_ratio, 0.0)
 
 
-def row_forces(joint: AnyBoltedJoint, preload: float, moment: float) -> tuple[float, float]:
+def row_forces(
+    joint_parameters: AnyBoltedJoint, preload: float, bending_moment: float
+) -> tuple[float, float]:
     """Force [N] of a bolt in the row y > 0 and in the row y < 0, under a preload [N] and a moment [N.m]."""
-    shift, left = moment / (joint.row_distance * joint.row_bolts), float(working_preload(joint, preload))
+    shift, left = (
+        bending_moment / (joint_parameters.row_distance * joint_parameters.row_bolts),
+        float(working_preload(joint_parameters, preload)),
+    )
     return left + shift, left - shift

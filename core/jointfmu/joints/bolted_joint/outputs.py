@@ -46,7 +46,7 @@ Rigid members: normal_stiffness and normal_about_* are without the stiffness of 
 Elastic members: they and the shear and torsional stiffness are for the complete joint, without the stiffness
 of all bolts between rigid members.
 """
-_TRACTION_SUM_NAMES, _SHEAR_STIFFNESS_SUMS = (
+_TRACTION_SUM_NAMES, _SHEAR_STIFFNESS_SUM_NAMES = (
     ("traction_x", "traction_y", "torsion"),
     ("shear_stiffness_x", "shear_stiffness_y", "torsional_stiffness"),
 )
@@ -78,20 +78,20 @@ def second_moments(
 def sum_normal_tractions(
     contact_points: PressureDistribution,
     pressure: Array,
-    stiffness: Array,
-    added_pressure: Number = 0.0,
-    added_stiffness: Number = 0.0,
+    contact_stiffness: Array,
+    shear_induced_pressure: Number = 0.0,
+    shear_induced_stiffness: Number = 0.0,
 ) -> dict[str, Number]:
     """Area-weighted sums and moments of pressure (n) [Pa] and normal stiffness (n) [Pa/m] of the points.
 
-    added_pressure, added_stiffness : terms of both that are due to shear
+    shear_induced_pressure, shear_induced_stiffness : terms of the pressure and of the stiffness due to shear
     """
-    p, k = pressure, stiffness
+    p, k = pressure, contact_stiffness
     x, y = contact_points.position.T
     return {
-        **first_moments(contact_points, "normal", p + added_pressure),
-        "normal_stiffness": contact_points.area_share @ (k + added_stiffness),
-        **second_moments(contact_points, "normal_", k + added_stiffness),
+        **first_moments(contact_points, "normal", p + shear_induced_pressure),
+        "normal_stiffness": contact_points.area_share @ (k + shear_induced_stiffness),
+        **second_moments(contact_points, "normal_", k + shear_induced_stiffness),
         "pressure": contact_points.area_share @ p,
         **first_moments(contact_points, "stiffness", k),
         **second_moments(contact_points, "", k),
@@ -100,37 +100,48 @@ def sum_normal_tractions(
 
 
 def sum_friction_tractions(
-    patches: FrictionPatches, traction: Array, tangent: Sequence[Number], friction_loss: Number
+    patches: FrictionPatches,
+    friction_traction: Array,
+    friction_tangent: Sequence[Number],
+    friction_loss: Number,
 ) -> dict[str, Number]:
-    """Area-weighted sums of the tractions (m, 3) [Pa] of the patches, with tangent and loss {name: value}.
+    """Area-weighted sums {name: value} of the friction of the patches: tractions (m, 3) [Pa], tangent, loss.
 
-    tangent, friction_loss : (3) [Pa/m] and [J/m2] sums over the patches
+    friction_tangent, friction_loss : (3) [Pa/m] and [J/m2] sums over the patches
     """
-    sums = [patches.area_share @ np.sum(traction * unit, axis=1) for unit in unit_displacements(patches)]
-    named = [*zip(_TRACTION_SUM_NAMES, sums, strict=True), *zip(_SHEAR_STIFFNESS_SUMS, tangent, strict=True)]
+    sums = [
+        patches.area_share @ np.sum(friction_traction * unit, axis=1) for unit in unit_displacements(patches)
+    ]
+    named = [
+        *zip(_TRACTION_SUM_NAMES, sums, strict=True),
+        *zip(_SHEAR_STIFFNESS_SUM_NAMES, friction_tangent, strict=True),
+    ]
     return {**dict(named), "loss": friction_loss}
 
 
-def sum_tangential_stiffness(patches: FrictionPatches, tangent: Array) -> list[Number]:
+def sum_tangential_stiffness(patches: FrictionPatches, friction_tangent: Array) -> list[Number]:
     """Tangential stiffness per area for s_x, s_y [Pa/m] and theta_z [Pa.m], from tangents (m, 6) [Pa/m]."""
-    return [patches.area_share @ directional_stiffness(tangent, unit) for unit in unit_displacements(patches)]
+    return [
+        patches.area_share @ directional_stiffness(friction_tangent, unit)
+        for unit in unit_displacements(patches)
+    ]
 
 
 def sum_cycle_energies(
-    foundation: Foundation, area_share: Array, approach: Array, amplitude: Array
+    slider_foundation: Foundation, area_share: Array, patch_approach: Array, displacement_amplitude: Array
 ) -> dict[str, Number]:
     """Energy loss and elastic energy per area [J/m2] of friction cycles, summed over the patches.
 
-    approach, amplitude : (m) [m] of the patches, see `Foundation.cycle_energies`
+    patch_approach, displacement_amplitude : (m) [m] of the patches, see `Foundation.cycle_energies`
     """
-    loss, stored = foundation.cycle_energies(approach, amplitude)
+    loss, stored = slider_foundation.cycle_energies(patch_approach, displacement_amplitude)
     return {"loop_work": area_share @ loss, "loop_energy": area_share @ stored}
 
 
 def correct_sums_for_lifted_heads(
     bolt_springs: BoltSprings,
     nominal_area: float,
-    elongation: Array,
+    bolt_elongation: Array,
     bolt_force: Array,
     contact_sums: Mapping[str, Number],
 ) -> dict[str, Number]:
@@ -138,24 +149,24 @@ def correct_sums_for_lifted_heads(
 
     The gaps change the bolt elongation and the normal stiffness.
 
-    elongation : (b) [m] since tightening
+    bolt_elongation : (b) [m] since tightening
     bolt_force : (b) [N] at tightening
     """
-    gap = bolt_springs.bolts_per_position * bolt_springs.head_gap(bolt_force, elongation)
-    missing = bolt_springs.bolts_per_position * (
-        bolt_springs.stiffness - bolt_springs.active_stiffness(bolt_force, elongation)
+    gap = bolt_springs.bolts_per_position * bolt_springs.head_gap(bolt_force, bolt_elongation)
+    inactive_stiffness = bolt_springs.bolts_per_position * (
+        bolt_springs.stiffness - bolt_springs.active_stiffness(bolt_force, bolt_elongation)
     )
     x, y = bolt_springs.position.T
     return {
         **dict(zip(_ELONGATION_SUM_NAMES, [np.sum(gap), gap @ x, gap @ y], strict=True)),
-        "normal_stiffness": contact_sums["normal_stiffness"] - np.sum(missing) / nominal_area,
-        "normal_about_x": contact_sums["normal_about_x"] - (missing @ y**2) / nominal_area,
-        "normal_about_y": contact_sums["normal_about_y"] - (missing @ x**2) / nominal_area,
+        "normal_stiffness": contact_sums["normal_stiffness"] - np.sum(inactive_stiffness) / nominal_area,
+        "normal_about_x": contact_sums["normal_about_x"] - (inactive_stiffness @ y**2) / nominal_area,
+        "normal_about_y": contact_sums["normal_about_y"] - (inactive_stiffness @ x**2) / nominal_area,
     }
 
 
 def elastic_member_sums(
-    joint: AnyBoltedJoint,
+    joint_parameters: AnyBoltedJoint,
     assembly: JointAssembly,
     trial_state: TrialState,
     bolt_force: Array,
@@ -168,9 +179,14 @@ def elastic_member_sums(
     bolt_force  : (b) [N] at tightening
     loop_energy : [J/m2] of the friction patches
     """
-    area, modes, bolts, elongation = joint.A_0, assembly.modes, assembly.bolts, trial_state.elongation
-    bolt_stiffness = joint.n_bolts * joint.bolt_stiffness
-    _, _, x2, y2, _ = joint.pattern.bolt_position_means
+    area, modes, bolts, elongation = (
+        joint_parameters.A_0,
+        assembly.modes,
+        assembly.bolts,
+        trial_state.elongation,
+    )
+    bolt_stiffness = joint_parameters.n_bolts * joint_parameters.bolt_stiffness
+    _, _, x2, y2, _ = joint_parameters.pattern.bolt_position_means
     gap, active_bolt_stiffness = (
         bolts.head_gap(bolt_force, elongation),
         bolts.active_stiffness(bolt_force, elongation),
@@ -181,11 +197,19 @@ def elastic_member_sums(
         active_bolt_stiffness,
     )
     K = np.maximum(np.diag(condense_stiffness(H)), 0.0)
-    stretch = modes.bolt_elongation @ trial_state.modal_coordinates + gap
-    elastic = joint.bolt_stiffness * (elongation @ elongation) - joint.bolt_stiffness * (gap @ gap)
-    energy = 0.5 * (modes.stiffness @ trial_state.modal_coordinates**2 + elastic)
+    elongation_with_gap = modes.bolt_elongation @ trial_state.modal_coordinates + gap
+    elastic = joint_parameters.bolt_stiffness * (
+        elongation @ elongation
+    ) - joint_parameters.bolt_stiffness * (gap @ gap)
+    energy = 0.5 * (modes.modal_stiffness @ trial_state.modal_coordinates**2 + elastic)
     return {
-        **dict(zip(_ELONGATION_SUM_NAMES, [np.sum(stretch), *(stretch @ bolts.position)], strict=True)),
+        **dict(
+            zip(
+                _ELONGATION_SUM_NAMES,
+                [np.sum(elongation_with_gap), *(elongation_with_gap @ bolts.position)],
+                strict=True,
+            )
+        ),
         "shear_stiffness_x": K[0] / area,
         "shear_stiffness_y": K[1] / area,
         "normal_stiffness": (K[2] - bolt_stiffness) / area,
@@ -202,43 +226,45 @@ def bolt_force_name(bolt_index: int) -> str:
 
 
 def joint_outputs(
-    joint: AnyBoltedJoint,
+    joint_parameters: AnyBoltedJoint,
     contact_sums: Mapping[str, Number],
-    displacement: Sequence[Number],
-    rotation: Sequence[Number],
-    rates: Sequence[Number],
+    relative_displacement: Sequence[Number],
+    relative_rotation: Sequence[Number],
+    motion_rates: Sequence[Number],
     p_max: Number,
 ) -> dict[str, Number]:
     """Outputs {name: value} of the joint, from the sums over the contact named in CONTACT_SUM_NAMES.
 
-    displacement, rotation : s_rel (3) [m] and theta (3) [rad] of side 2
-    rates                  : v_rel and omega (6) [m/s, rad/s]
+    relative_displacement, relative_rotation : s_rel (3) [m] and theta (3) [rad] of side 2
+    motion_rates           : v_rel and omega (6) [m/s, rad/s]
     p_max                  : largest pressure [Pa]
 
     A rotation about an in-plane axis moves a point along the normal, a rotation about the normal moves it in
     the plane: Hu 2023, Eq. 45, corrected. The bolts act in parallel with the interface and only pull, see
     `BoltSprings`.
     """
-    area, rho = joint.A_0, joint.shear_stiffness_ratio()
-    bolts = joint.n_bolts * joint.bolt_stiffness
-    _, _, bolt_x2, bolt_y2, _ = joint.pattern.bolt_position_means
+    area, rho = joint_parameters.A_0, joint_parameters.shear_stiffness_ratio()
+    bolts = joint_parameters.n_bolts * joint_parameters.bolt_stiffness
+    _, _, bolt_x2, bolt_y2, _ = joint_parameters.pattern.bolt_position_means
     K_n = area * contact_sums["stiffness"]
-    eta_n, eta_t = contact_sums["plastic"] / contact_sums["elastic"], joint.loss_factor()
-    first_loading = mindlin.equivalent_damping(eta_n, joint.mass, K_n)
-    C_n = select(joint.plastic_damping, first_loading, 0.0 * K_n)
-    C_t = mindlin.equivalent_damping(eta_t, joint.mass, rho * K_n)
+    eta_n, eta_t = contact_sums["plastic"] / contact_sums["elastic"], joint_parameters.loss_factor()
+    first_loading = mindlin.equivalent_damping(eta_n, joint_parameters.mass, K_n)
+    C_n = select(joint_parameters.plastic_damping, first_loading, 0.0 * K_n)
+    C_t = mindlin.equivalent_damping(eta_t, joint_parameters.mass, rho * K_n)
     viscous = [
-        select(joint.damping, part, 0.0 * part)
-        for part in _damping_forces(area, contact_sums, C_t, C_n, rates)
+        select(joint_parameters.damping, part, 0.0 * part)
+        for part in _damping_forces(area, contact_sums, C_t, C_n, motion_rates)
     ]
-    tension = _bolt_forces_and_moments(bolts, joint.pattern.bolt_position_means, displacement[2], rotation)
-    stretch_force = [joint.bolt_stiffness * contact_sums[name] for name in _ELONGATION_SUM_NAMES]
+    tension = _bolt_forces_and_moments(
+        bolts, joint_parameters.pattern.bolt_position_means, relative_displacement[2], relative_rotation
+    )
+    stretch_force = [joint_parameters.bolt_stiffness * contact_sums[name] for name in _ELONGATION_SUM_NAMES]
     f_x, f_y, m_z = (-area * contact_sums[name] for name in ("traction_x", "traction_y", "torsion"))
     eta_loop = _ratio_or_zero(contact_sums["loop_work"], 2.0 * np.pi * contact_sums["loop_energy"])
     K_zz = np.maximum(area * contact_sums["normal_stiffness"] + bolts, 0.0)  # not below by round-off
     K = [area * contact_sums["shear_stiffness_x"], area * contact_sums["shear_stiffness_y"], K_zz]
-    damped = [select(joint.damping, part, 0.0 * part) for part in (C_t, C_t, C_n)]
-    steps = [largest_stable_steps(k, c, 1.0 / joint.mass) for k, c in zip(K, damped, strict=True)]
+    damped = [select(joint_parameters.damping, part, 0.0 * part) for part in (C_t, C_t, C_n)]
+    steps = [largest_stable_steps(k, c, 1.0 / joint_parameters.mass) for k, c in zip(K, damped, strict=True)]
     shortest = {
         name: np.minimum(np.minimum(x, y), z)
         for (name, _), x, y, z in zip(STABLE_STEP_OUTPUTS, *steps, strict=True)
@@ -272,29 +298,29 @@ def joint_outputs(
         "K_rz": area * contact_sums["torsional_stiffness"],
         "p_mean": contact_sums["pressure"],
         "p_max": p_max,
-        "slip": _friction_utilization(contact_sums, joint.mu),
+        "slip": _friction_utilization(contact_sums, joint_parameters.mu),
         "E_loss": area * contact_sums["loss"],
         "eta_loop": eta_loop,
         "C_loop": mindlin.equivalent_damping(
-            eta_loop, joint.mass, K[0] if joint.has_elastic_members else rho * K_n
+            eta_loop, joint_parameters.mass, K[0] if joint_parameters.has_elastic_members else rho * K_n
         ),
         **shortest,
     }
 
 
 def _bolt_forces_and_moments(
-    stiffness: Number, position_means: Sequence[Number], s_z: Number, rotation: Sequence[Number]
+    bolt_stiffness: Number, position_means: Sequence[Number], s_z: Number, relative_rotation: Sequence[Number]
 ) -> tuple[Number, Number, Number]:
     """Forces f_z, m_x, m_y [N, N.m] of bolts without gaps, each elongated by s_z + theta_x y - theta_y x.
 
-    stiffness      : [N/m] of all bolts
+    bolt_stiffness : [N/m] of all bolts
     position_means : means of their x, y [m], x^2, y^2, x y [m2]
     """
     x, y, x2, y2, xy = position_means
     return (
-        -stiffness * (s_z + y * rotation[0] - x * rotation[1]),
-        -stiffness * (y * s_z + y2 * rotation[0] - xy * rotation[1]),
-        stiffness * (x * s_z + xy * rotation[0] - x2 * rotation[1]),
+        -bolt_stiffness * (s_z + y * relative_rotation[0] - x * relative_rotation[1]),
+        -bolt_stiffness * (y * s_z + y2 * relative_rotation[0] - xy * relative_rotation[1]),
+        bolt_stiffness * (x * s_z + xy * relative_rotation[0] - x2 * relative_rotation[1]),
     )
 
 
@@ -314,18 +340,18 @@ def _friction_utilization(contact_sums: Mapping[str, Number], mu: Number) -> Num
 
 
 def _damping_forces(
-    area: Number,
+    nominal_area: Number,
     contact_sums: Mapping[str, Number],
     tangential_damping: Number,
     normal_damping: Number,
-    rates: Sequence[Number],
+    motion_rates: Sequence[Number],
 ) -> list[Number]:
     """Forces and moments (6) [N, N.m] of dashpots, distributed over the contact like its stiffness.
 
     tangential_damping, normal_damping : C_t, C_n [N.s/m] of the complete contact
-    rates                              : (6) velocities [m/s] and angular velocities [rad/s] of side 2
+    motion_rates                       : (6) velocities [m/s] and angular velocities [rad/s] of side 2
     """
-    v_x, v_y, v_z, w_x, w_y, w_z = rates
+    v_x, v_y, v_z, w_x, w_y, w_z = motion_rates
     K, K_x, K_y = (contact_sums[name] for name in ("stiffness", "stiffness_x", "stiffness_y"))
     K_yy, K_xx, K_xy = (contact_sums[name] for name in ("about_x", "about_y", "about_xy"))
     t, n = -_ratio_or_zero(tangential_damping, K), -_ratio_or_zero(normal_damping, K)

@@ -30,93 +30,107 @@ _DEFAULT_RAMP_END_PRELOAD = 30e3
 _DEFAULT_LOOP_PRELOAD = 9e3
 """Preload of the load cycle [N] if none is stated: preload of the published pressures. It is larger if
 embedding takes more than half of it."""
-_NORMAL_INPUTS = ("preload", "moment", "temperature", "s_rel_z", "theta_x", "theta_y")
+_CONTACT_PRESSURE_INPUT_NAMES = ("preload", "moment", "temperature", "s_rel_z", "theta_x", "theta_y")
 """Names of the inputs that change the contact pressure."""
-_INTERFACE_OUTPUTS = ("C_xx", "C_yy", "C_zz", "eta_t", "eta_n")
+_INTERFACE_ONLY_OUTPUT_NAMES = ("C_xx", "C_yy", "C_zz", "eta_t", "eta_n")
 """Names of the outputs of the interface alone: damping and loss factors."""
 _UNDAMPED_STEP_ADVICE = (
     "; 0 at the defaults, because C_zz = 0: then use model exchange, a sequential master or one FMU of the "
     "system (jointfmu system), or damp the body along z by a part of your own"
 )
 """What to do where no step is stable for a parallel master."""
-_MOTION_INPUTS = (*_NORMAL_INPUTS, "s_rel_x", "s_rel_y", "theta_z")
+_INPUT_NAMES_WITHOUT_RATES = (*_CONTACT_PRESSURE_INPUT_NAMES, "s_rel_x", "s_rel_y", "theta_z")
 """Names of all inputs except the rates."""
 
 
-def _read_vector(inputs: VariableValues, vector_name: str) -> tuple[float, float, float]:
+def _read_vector(input_values: VariableValues, vector_name: str) -> tuple[float, float, float]:
     """Vector (3) of the inputs NAME_x, NAME_y and NAME_z."""
-    return inputs[f"{vector_name}_x"], inputs[f"{vector_name}_y"], inputs[f"{vector_name}_z"]
-
-
-def _advance_spring(
-    spring: BoltedJointSpring, inputs: VariableValues, history: Any
-) -> tuple[Mapping[str, float], Any]:
-    """Compute outputs and new history variables after a straight path to the inputs {name: value}."""
-    q = np.array([*_read_vector(inputs, "s_rel"), *_read_vector(inputs, "theta")])
-    rates = (*_read_vector(inputs, "v_rel"), *_read_vector(inputs, "omega"))
-    return spring.advance(
-        JointInputs(inputs["preload"], inputs["moment"], q, rates, inputs["temperature"]), history
+    return (
+        input_values[f"{vector_name}_x"],
+        input_values[f"{vector_name}_y"],
+        input_values[f"{vector_name}_z"],
     )
 
 
-def _find_ramp_range(spring: BoltedJointSpring, start_values: VariableValues) -> tuple[float, float]:
+def _advance_spring(
+    joint_spring: BoltedJointSpring, input_values: VariableValues, history: Any
+) -> tuple[Mapping[str, float], Any]:
+    """Compute outputs and new history variables after a straight path to the inputs {name: value}."""
+    q = np.array([*_read_vector(input_values, "s_rel"), *_read_vector(input_values, "theta")])
+    rates = (*_read_vector(input_values, "v_rel"), *_read_vector(input_values, "omega"))
+    return joint_spring.advance(
+        JointInputs(input_values["preload"], input_values["moment"], q, rates, input_values["temperature"]),
+        history,
+    )
+
+
+def _find_ramp_range(joint_spring: BoltedJointSpring, start_values: VariableValues) -> tuple[float, float]:
     """Start and end of the ramp of the preload [N]; it ends at the stated preload.
 
     Raises ValueError if the stated preload is not larger than its loss by embedding and temperature.
     """
-    preload, joint, temperature = start_values["preload"], spring.joint, start_values["temperature"]
+    preload, joint, temperature = start_values["preload"], joint_spring.joint, start_values["temperature"]
     loss = joint.embedding - preload_at_temperature(joint, 0.0, temperature)
     if 0.0 < preload <= loss:
         warm = "" if temperature == TIGHTENING_TEMPERATURE else f" and temperature = {temperature:g} K"
         raise ValueError(
-            f"preload = {preload:g} N is outside ({loss:g}, inf) N: embedding{warm} takes all of it; "
-            "increase preload or reduce embedding"
+            f"preload = {preload:g} N is outside ({loss:g}, inf) N: embedding{warm} reduces it by {loss:g} "
+            "N; increase preload or reduce embedding"
         )
     return 0.0, preload or max(_DEFAULT_RAMP_END_PRELOAD, 2.0 * loss)
 
 
-def _max_row_moment(joint: Any, inputs: VariableValues) -> Number:
+def _max_row_moment(joint_parameters: Any, input_values: VariableValues) -> Number:
     """Largest moment [N.m] at which no bolt force of the two rows is negative."""
-    preload = preload_at_temperature(joint, inputs["preload"], inputs["temperature"])
-    return working_preload(joint, preload) * joint.row_distance * joint.row_bolts
+    preload = preload_at_temperature(joint_parameters, input_values["preload"], input_values["temperature"])
+    return (
+        working_preload(joint_parameters, preload)
+        * joint_parameters.row_distance
+        * joint_parameters.row_bolts
+    )
 
 
-def _make_model_variant(model: Model, joint: AnyBoltedJoint) -> Model:
+def _make_model_variant(fmu_model: Model, joint_parameters: AnyBoltedJoint) -> Model:
     """Model for a parameter set: it has a force output for each bolt, if the members are elastic.
 
     The preload of its load cycle is at least twice the preload that is lost by embedding.
     """
-    assert model.load_cycle
+    assert fmu_model.load_cycle
     loop = replace(
-        model.load_cycle, variable_values={"preload": max(_DEFAULT_LOOP_PRELOAD, 2.0 * joint.embedding)}
+        fmu_model.load_cycle,
+        variable_values={"preload": max(_DEFAULT_LOOP_PRELOAD, 2.0 * joint_parameters.embedding)},
     )
-    return _add_bolt_force_outputs(replace(model, load_cycle=loop), joint)
+    return _add_bolt_force_outputs(replace(fmu_model, load_cycle=loop), joint_parameters)
 
 
-def _add_bolt_force_outputs(model: Model, joint: AnyBoltedJoint) -> Model:
+def _add_bolt_force_outputs(fmu_model: Model, joint_parameters: AnyBoltedJoint) -> Model:
     """Add the bolt forces to the outputs of a model, if the members are elastic.
 
     Then all outputs depend on all motions, except the viscous damping of the interface.
     """
-    if not joint.has_elastic_members:
-        return model
+    if not joint_parameters.has_elastic_members:
+        return fmu_model
     meaning = (
         "force of bolt {}: preload at this temperature minus embedding, plus its shares of moment and load; "
         "0 after its head lifts off"
     )
     forces = [
-        Variable(bolt_force_name(j), "N", meaning.format(j + 1), 1e4) for j in range(round(joint.n_bolts))
+        Variable(bolt_force_name(j), "N", meaning.format(j + 1), 1e4)
+        for j in range(round(joint_parameters.n_bolts))
     ]
-    inputs = _MOTION_INPUTS
+    inputs = _INPUT_NAMES_WITHOUT_RATES
     known = {
-        name: (*inputs, *(v for v in given if v not in inputs)) for name, given in model.dependencies.items()
+        name: (*inputs, *(v for v in given if v not in inputs))
+        for name, given in fmu_model.dependencies.items()
     }
     dependencies = {**known, "eta_t": (), **{force.name: inputs for force in forces}}
     outputs = [
-        replace(o, doc=f"{o.doc}{'; of the interface alone' if o.name in _INTERFACE_OUTPUTS else ''}")
-        for o in model.outputs
+        replace(
+            o, doc=f"{o.doc}{'; of the interface alone' if o.name in _INTERFACE_ONLY_OUTPUT_NAMES else ''}"
+        )
+        for o in fmu_model.outputs
     ]
-    return replace(model, outputs=(*outputs, *forces), dependencies=dependencies)
+    return replace(fmu_model, outputs=(*outputs, *forces), dependencies=dependencies)
 
 
 MODELS = (
@@ -125,7 +139,7 @@ MODELS = (
         joint="bolted_joint",
         doc="Bolted joint under uneven pressure: motion in, force out",
         parameter_class=BoltedJointParameters,
-        tabulate=BoltedJointSpring.for_joint,
+        tabulate=BoltedJointSpring.from_joint,
         inputs=(
             Variable("preload", "N", "preload of each bolt (bolt force at tightening)", 1e4, minimum=0.0),
             Variable("moment", "N.m", "bending moment on the joint", 1e3),
@@ -228,8 +242,8 @@ MODELS = (
                     -math.inf,
                     select(j.memory, 2.0, MAX_FRICTION_UTILIZATION_WITHOUT_HISTORY),
                 ),
-                "the shear force exceeds the friction limit (zero if the joint is open); without memory "
-                "there is no slip",
+                "the shear force exceeds the friction limit (zero if the joint is open); with memory = false "
+                "the joint does not slip",
             ),
             ValidityLimit(
                 "temperature",
@@ -237,18 +251,24 @@ MODELS = (
                 "Young's moduli and expansion coefficients are those at 20 degrees C; the unit is kelvin",
             ),
         ),
-        ramp=LoadRamp("preload", _DEFAULT_RAMP_END_PRELOAD, 100.0, find_range=_find_ramp_range),
+        ramp=LoadRamp("preload", _DEFAULT_RAMP_END_PRELOAD, 100.0, find_load_range=_find_ramp_range),
         load_cycle=LoadCycle("s_rel_x", 5e-6, {"preload": _DEFAULT_LOOP_PRELOAD}),
         dependencies={
-            "f_x": (*_MOTION_INPUTS, "v_rel_x", "omega_z"),
-            "f_y": (*_MOTION_INPUTS, "v_rel_y", "omega_z"),
-            "m_z": (*_MOTION_INPUTS, "v_rel_x", "v_rel_y", "omega_z"),
-            **dict.fromkeys(("f_z", "m_x", "m_y"), (*_MOTION_INPUTS, "v_rel_z", "omega_x", "omega_y")),
-            **dict.fromkeys(("K_xx", "K_yy", "K_rz", "slip", "E_loss", "eta_loop", "C_loop"), _MOTION_INPUTS),
-            **{name: _MOTION_INPUTS for name, _ in STABLE_STEP_OUTPUTS},
-            **dict.fromkeys(("K_zz", "K_rx", "K_ry"), _MOTION_INPUTS),
+            "f_x": (*_INPUT_NAMES_WITHOUT_RATES, "v_rel_x", "omega_z"),
+            "f_y": (*_INPUT_NAMES_WITHOUT_RATES, "v_rel_y", "omega_z"),
+            "m_z": (*_INPUT_NAMES_WITHOUT_RATES, "v_rel_x", "v_rel_y", "omega_z"),
+            **dict.fromkeys(
+                ("f_z", "m_x", "m_y"), (*_INPUT_NAMES_WITHOUT_RATES, "v_rel_z", "omega_x", "omega_y")
+            ),
+            **dict.fromkeys(
+                ("K_xx", "K_yy", "K_rz", "slip", "E_loss", "eta_loop", "C_loop"), _INPUT_NAMES_WITHOUT_RATES
+            ),
+            **{name: _INPUT_NAMES_WITHOUT_RATES for name, _ in STABLE_STEP_OUTPUTS},
+            **dict.fromkeys(("K_zz", "K_rx", "K_ry"), _INPUT_NAMES_WITHOUT_RATES),
             "eta_t": (),
-            **dict.fromkeys(("C_xx", "C_yy", "C_zz", "eta_n", "p_mean", "p_max"), _NORMAL_INPUTS),
+            **dict.fromkeys(
+                ("C_xx", "C_yy", "C_zz", "eta_n", "p_mean", "p_max"), _CONTACT_PRESSURE_INPUT_NAMES
+            ),
         },
         fixed_parameters=("pattern", "plate", "field", "bodies"),
         make_variant=_make_model_variant,

@@ -39,7 +39,7 @@ MODELS = (
             "f",
             3e3,
             10.0,
-            find_range=lambda s, v: (
+            find_load_range=lambda s, v: (
                 0.0,
                 max(2.0 * v["f"], _RAMP_END_PRESSURE_OVER_HARDNESS * s.joint.A_0 * s.curve.end_point[1]),
             ),
@@ -59,6 +59,9 @@ KIND = JointKind(
         "table": TableGearContactParameters,
     },
     models=MODELS,
-    surfaces=(RoughSurface("surface1", direction="x"), RoughSurface("surface2", direction="y")),
+    surfaces=(
+        RoughSurface("surface1", profile_direction="x"),
+        RoughSurface("surface2", profile_direction="y"),
+    ),
 )
 """Description of the gear contact for builders and tools."""

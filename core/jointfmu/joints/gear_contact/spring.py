@@ -53,15 +53,18 @@ ContactParameters: TypeAlias = GearContactParameters | RoughGearContactParameter
 
 @dataclass(frozen=True, slots=True)
 class GearContactSpring:
-    """Tabulated gear contact: normal force in, approach out."""
+    """Tabulated gear contact: normal force in, approach out.
+
+    curve : pressure [Pa] of the flanks as a function of their approach [m]
+    """
 
     joint: ContactParameters
     curve: Curve
 
     @classmethod
-    def tabulate(cls, joint: ContactParameters) -> "GearContactSpring":
-        """Tabulate pressure over approach of the flanks for a parameter set."""
-        return cls(joint, tabulate_approach(joint))
+    def tabulate(cls, joint_parameters: ContactParameters) -> "GearContactSpring":
+        """Tabulate the pressure of the flanks as a function of their approach, for a parameter set."""
+        return cls(joint_parameters, tabulate_approach(joint_parameters))
 
     @property
     def max_force(self) -> float:
@@ -86,23 +89,23 @@ class GearContactSpring:
 
 
 def contact_outputs(
-    joint: ContactParameters,
+    joint_parameters: ContactParameters,
     normal_force: Number,
-    approach: Number,
-    stiffness: Number,
+    flank_approach: Number,
+    contact_stiffness: Number,
     real_area: Number,
     elastic_fraction: Number,
 ) -> dict[str, Number]:
     """Outputs of the gear contact at a normal force f [N].
 
-    approach  : [m] from first contact
-    stiffness : [N/m3] per nominal area, of the curve
+    flank_approach : [m] from first contact
+    contact_stiffness : [N/m3] per nominal area, of the curve
     real_area : [m2] real contact area of the law
     elastic_fraction : [1] elastic fraction of the real area
     """
     return {
-        "s_rel": approach,
-        "K_N": joint.A_0 * stiffness,
+        "s_rel": flank_approach,
+        "K_N": joint_parameters.A_0 * contact_stiffness,
         "A_r": np.where(normal_force > 0.0, real_area, 0.0),
         "elastic_fraction": np.where(normal_force > 0.0, elastic_fraction, 0.0),
     }

@@ -16,12 +16,12 @@ _RAMP_END_OVER_TABLE_END_DEFLECTION = 0.3
 """Deflection at the end of the load ramp over deflection at the end of the table [1]."""
 
 
-def _find_ramp_range(spring: GearMeshSpring, inputs: VariableValues) -> tuple[float, float]:
+def _find_ramp_range(mesh_spring: GearMeshSpring, input_values: VariableValues) -> tuple[float, float]:
     """Angles phi1 [rad] at which the driving flanks touch, and at which the load ramp ends."""
-    mesh = spring.joint
-    touch = 0.5 * mesh.backlash - mesh.r_b2 * inputs["phi2"]
+    mesh = mesh_spring.joint
+    touch = 0.5 * mesh.backlash - mesh.r_b2 * input_values["phi2"]
     return touch / mesh.r_b1, (
-        touch + _RAMP_END_OVER_TABLE_END_DEFLECTION * spring.curve.end_point[0]
+        touch + _RAMP_END_OVER_TABLE_END_DEFLECTION * mesh_spring.curve.end_point[0]
     ) / mesh.r_b1
 
 
@@ -61,7 +61,7 @@ MODELS = (
         ),
         evaluate=lambda s, v: s.evaluate(v["phi1"], v["w1"], v["phi2"], v["w2"]),
         validity_limits=(ValidityLimit("s_rel", lambda j, end, v: (-end[0], end[0]), EXTRAPOLATION_WARNING),),
-        ramp=LoadRamp("phi1", 1.5e-3, 5e-6, find_range=_find_ramp_range),
+        ramp=LoadRamp("phi1", 1.5e-3, 5e-6, find_load_range=_find_ramp_range),
         dependencies=dict.fromkeys(
             ("s_rel", "transmission_error", "K", "pairs", "E", *(name for name, _ in STABLE_STEP_OUTPUTS)),
             _ANGLE_INPUTS,
@@ -80,6 +80,9 @@ KIND = JointKind(
         "table": TableGearMeshParameters,
     },
     models=MODELS,
-    surfaces=(RoughSurface("surface1", direction="x"), RoughSurface("surface2", direction="y")),
+    surfaces=(
+        RoughSurface("surface1", profile_direction="x"),
+        RoughSurface("surface2", profile_direction="y"),
+    ),
 )
 """Description of the gear mesh for builders and tools."""

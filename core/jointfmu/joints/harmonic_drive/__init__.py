@@ -8,13 +8,13 @@ from .prescribed_midline import CatalogueDriveParameters, TableDriveParameters
 from .variables import MODELS
 
 
-def _find_flange_ratings(drive: DriveParameters) -> dict[str, FlangeRating]:
-    """Rated torque, motion and friction at the wave generator (flange1) and at the output (flange2)."""
-    ratio = abs(drive.ratio)
-    friction = float(max(friction_limits(drive, 0.0, 0.0)))
+def _find_flange_ratings(drive_parameters: DriveParameters) -> dict[str, FlangeRating]:
+    """Rated torque, motion ratio and dry friction of wave generator (flange1) and output (flange2)."""
+    ratio = abs(drive_parameters.ratio)
+    friction = float(max(friction_limits(drive_parameters, 0.0, 0.0)))
     return {
-        "flange1": FlangeRating(drive.rated_torque / ratio, ratio, friction),
-        "flange2": FlangeRating(drive.rated_torque, 1.0, 0.0),
+        "flange1": FlangeRating(drive_parameters.rated_torque / ratio, ratio, friction),
+        "flange2": FlangeRating(drive_parameters.rated_torque, 1.0, 0.0),
     }
 
 

@@ -14,7 +14,7 @@ Lost motion: additional angle of the output around zero torque.
 The teeth never separate, so lost motion is a soft range, not a gap. Its angle is in series with the wind-up
 of the law,
 
-    phi_p(T) = lost_motion/2 tanh(T/T_p),   T_p = PLAY_OVER_RATED_TORQUE rated_torque,
+    phi_p(T) = lost_motion/2 tanh(T/T_p),   T_p = PLAY_TORQUE_OVER_RATED_TORQUE rated_torque,
 
 smooth and odd, so that torque over wind-up stays a curve with a finite stiffness everywhere. Catalogues state
 as lost motion the angle between +4 % and -4 % of rated torque, midway between the branches of the loop
@@ -33,7 +33,7 @@ FRICTION_HARMONICS = (1, 2)
 """Periods of the dry friction per turn of the wave generator."""
 KINEMATIC_ERROR_HARMONICS = (1, 2, 4)
 """Periods of the kinematic error per turn of the wave generator."""
-PLAY_OVER_RATED_TORQUE = 0.01
+PLAY_TORQUE_OVER_RATED_TORQUE = 0.01
 """T_p over rated torque [1]: at 4 % of rated torque the play has reached 99.93 % of its final value."""
 MAX_TEMPERATURE_COEFFICIENT = 0.2
 """Largest relative change of friction per kelvin [1/K]: twice that of the most viscous cylinder oil."""
@@ -41,7 +41,7 @@ MAX_TEMPERATURE_COEFFICIENT = 0.2
 
 @dataclass(frozen=True, kw_only=True)
 class DriveParameters(ABC):
-    """Parameters of a harmonic drive except the midline (torque over wind-up without hysteresis)."""
+    """Parameters of a harmonic drive, except its midline: torque-wind-up curve without hysteresis."""
 
     ratio: float = quantity_field(
         "1", "speed ratio of wave generator and output; negative: they turn in opposite senses; not 0"
@@ -162,7 +162,7 @@ class DriveParameters(ABC):
     @property
     @abstractmethod
     def law(self) -> object:
-        """Interface law of the contact pair of flexspline and bearing.
+        """Interface law of the contact pair: flexspline and outer ring of the flexible bearing.
 
         None if the stiffness of the drive follows from no interface law.
         """
@@ -170,7 +170,7 @@ class DriveParameters(ABC):
     @property
     @abstractmethod
     def max_table_torque(self) -> Number:
-        """Torque [N.m] at the end of the table of torque over wind-up."""
+        """Torque [N.m] at the end of the midline's table, torque as a function of wind-up."""
 
     @property
     def ramp_torque(self) -> Number:
@@ -180,7 +180,11 @@ class DriveParameters(ABC):
     @property
     @abstractmethod
     def K_FTS(self) -> Number:
-        """Stiffness K_FTS [N.m/rad] in series with K_TS, independent of the torque; larger than any K_WTS."""
+        """Stiffness K_FTS [N.m/rad] of circular spline and flexspline.
+
+        K_FTS is in series with the stiffness K_TS of the contact pair of flexspline and bearing: both give
+        the stiffness K_WTS of the drive. K_FTS is independent of the torque, and larger than any K_WTS.
+        """
 
     @abstractmethod
     def pressure(self, torque: Number) -> Number:
@@ -188,15 +192,15 @@ class DriveParameters(ABC):
 
     @property
     def effective_load_loss_back(self) -> Number:
-        """Share of the load torque [1] lost by friction if the load drives the motor.
+        """Share of the load torque [1] lost by friction if the load drives the motor: load_loss_back.
 
-        The share is load_loss_back, or load_loss if load_loss_back is negative.
+        A negative load_loss_back stands for load_loss.
         """
         return select(self.load_loss_back < 0.0, self.load_loss, self.load_loss_back)
 
     @property
-    def pair_stiffness_scale(self) -> Number:
-        """Ratio [1] of K_TS of the drive to K_TS in the figures of the paper (K_TS_pair)."""
+    def contact_pair_stiffness_scale(self) -> Number:
+        """Stiffness K_TS of the contact pair, divided by that in the figures of the paper (K_TS_pair) [1]."""
         return 1.0
 
     def find_parameter_limits(self) -> list[ParameterLimit]:
@@ -211,46 +215,57 @@ class DriveParameters(ABC):
         ]
 
     def find_table_parameter_limits(self) -> list[ParameterLimit]:
-        """Parameter limits that a table of torque over wind-up up to the last torque requires."""
+        """Limits of parameters under which the midline can be tabulated up to its last torque."""
         return []
 
 
-def error_amplitudes(drive: DriveParameters) -> list[Number]:
+def kinematic_error_amplitudes(drive_parameters: DriveParameters) -> list[Number]:
     """Amplitudes [rad] of the kinematic error, one for each of KINEMATIC_ERROR_HARMONICS."""
-    return [getattr(drive, f"error_{n}") for n in KINEMATIC_ERROR_HARMONICS]
+    return [getattr(drive_parameters, f"error_{n}") for n in KINEMATIC_ERROR_HARMONICS]
 
 
-def kinematic_error(drive: DriveParameters, phi1: Number) -> tuple[Number, Number, Number]:
-    """Kinematic error (...) [rad] at angles phi1 (...) [rad]; its first [1] and second derivative [1/rad]."""
+def kinematic_error(drive_parameters: DriveParameters, phi1: Number) -> tuple[Number, Number, Number]:
+    """Kinematic error (...) [rad] at wave generator angles phi1 (...) [rad], and two derivatives.
+
+    Returns also the first [1] and the second derivative [1/rad] with respect to phi1.
+    """
     error = slope = bend = 0.0
-    harmonics = compute_harmonics(phi1, KINEMATIC_ERROR_HARMONICS)
-    for (n, (sine, cosine)), amplitude in zip(harmonics.items(), error_amplitudes(drive), strict=True):
-        phase = getattr(drive, f"error_{n}_phase")
+    harmonics = compute_sines_and_cosines(phi1, KINEMATIC_ERROR_HARMONICS)
+    for (n, (sine, cosine)), amplitude in zip(
+        harmonics.items(), kinematic_error_amplitudes(drive_parameters), strict=True
+    ):
+        phase = getattr(drive_parameters, f"error_{n}_phase")
         wave = amplitude * (sine * np.cos(phase) + cosine * np.sin(phase))
         wave_slope = n * amplitude * (cosine * np.cos(phase) - sine * np.sin(phase))
         error, slope, bend = error + wave, slope + wave_slope, bend - n * n * wave
     return error, slope, bend
 
 
-def compute_harmonics(angle: Number, orders: Sequence[int]) -> dict[int, tuple[Number, Number]]:
-    """{n: (sin(n angle), cos(n angle))} of orders n, powers of 2, by the formulas of the double angle.
+def compute_sines_and_cosines(
+    shaft_angle: Number, harmonic_orders: Sequence[int]
+) -> dict[int, tuple[Number, Number]]:
+    """Compute sines and cosines of multiples of an angle: {n: (sin(n angle), cos(n angle))}.
 
-    Sine and cosine are evaluated once: they take a large part of the time of a drive.
+    The orders n are powers of 2, for the formulas of the double angle. Sine and cosine are evaluated once:
+    they take a large part of the computing time of a drive.
     """
-    order, sine, cosine = 1, np.sin(angle), np.cos(angle)
+    order, sine, cosine = 1, np.sin(shaft_angle), np.cos(shaft_angle)
     harmonics = {order: (sine, cosine)}
-    while order < max(orders):
+    while order < max(harmonic_orders):
         order, sine, cosine = 2 * order, 2.0 * sine * cosine, (cosine - sine) * (cosine + sine)
         harmonics[order] = sine, cosine
-    return {n: harmonics[n] for n in orders}
+    return {n: harmonics[n] for n in harmonic_orders}
 
 
-def lost_motion_angle(drive: DriveParameters, torque: Number) -> tuple[Number, Number, Number]:
-    """Angle phi_p (...) [rad] of the lost motion at torques (...) [N.m].
+def lost_motion_angle(drive_parameters: DriveParameters, torque: Number) -> tuple[Number, Number, Number]:
+    """Wind-up (...) [rad] of the lost motion (play) at torques (...) [N.m]: half of lost_motion at most.
 
-    Returns also its first [rad/(N.m)] and second derivative [rad/(N.m)2].
+    Returns also the first [rad/(N.m)] and second derivative [rad/(N.m)2] with respect to the torque.
     """
-    width, half = PLAY_OVER_RATED_TORQUE * drive.rated_torque, 0.5 * drive.lost_motion
+    width, half = (
+        PLAY_TORQUE_OVER_RATED_TORQUE * drive_parameters.rated_torque,
+        0.5 * drive_parameters.lost_motion,
+    )
     share = np.tanh(torque / width)
     slope = half * (1.0 - share * share) / width
     return half * share, slope, -2.0 * share * slope / width

@@ -20,26 +20,26 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...contact.interface import MAX_ITERATIONS
+from ...contact.interface import MAX_INVERSION_ITERATIONS
 from ...contact.powerlaw import exprel
 from ...mechanics.curve import Curve
 from ...mechanics.history_layout import HistoryLayout
 from ...mechanics.jenkins import Sliders, SliderUpdate
 from ...quantity import Array, Number
 from .drive import DriveParameters
-from .law import ContactPairDriveParameters, pair_log_area
+from .law import ContactPairDriveParameters, contact_pair_log_area
 
-HYSTERESIS_SLIDERS = 44
+HYSTERESIS_SLIDER_COUNT = 44
 """Number of sliders of the hysteresis [1].
 
 The virgin curve is then within 0.2 % of M_f, the loop area within 1 % for amplitudes above 0.1 M_f."""
 _SLIDER_SHARE_GRADING_RATE, _SLIDER_SHARE_GRADING_EXPONENT = 3.5, 2.5
 """Grading of REMAINING_FRICTION_SHARES [1]: fine where the first sliders slip, coarse where the last do."""
 _MOBILISED_FRICTION_SHARES = np.expm1(
-    _SLIDER_SHARE_GRADING_RATE * np.arange(HYSTERESIS_SLIDERS) / HYSTERESIS_SLIDERS
+    _SLIDER_SHARE_GRADING_RATE * np.arange(HYSTERESIS_SLIDER_COUNT) / HYSTERESIS_SLIDER_COUNT
 ) / np.expm1(_SLIDER_SHARE_GRADING_RATE)
 """Values of 1 - s [1], the mobilised share of friction, that separate the sliders; graded towards 0."""
-HISTORY_LAYOUT = HistoryLayout({"force": (HYSTERESIS_SLIDERS,), "wind_up": (), "loss": ()})
+HISTORY_LAYOUT = HistoryLayout({"force": (HYSTERESIS_SLIDER_COUNT,), "wind_up": (), "loss": ()})
 """History variables of the hysteresis: slider torques [N.m], wind-up [rad], loss [J]."""
 REMAINING_FRICTION_SHARES = (
     *((1.0 - _MOBILISED_FRICTION_SHARES) ** _SLIDER_SHARE_GRADING_EXPONENT).tolist(),
@@ -51,129 +51,152 @@ WIND_UP_TOLERANCE = 4e-16
 MIN_UNLOADING_OVER_REVERSAL_WIND_UP = 4.0
 """Smallest K_h phi/(2 M_f) [1] on the unloading path from rated torque to zero, if hysteresis_stiffness is 0:
 at zero torque the friction has then reversed to 1 - 2 exp(-4) = 0.96 of its limit."""
-LIMIT_TOLERANCE, MAX_LIMIT_ITERATIONS = 1e-13, 400
+FRICTION_LIMIT_TOLERANCE, MAX_FRICTION_LIMIT_ITERATIONS = 1e-13, 400
 """Relative change of M_f [1] at which its iteration has converged, and the largest number of iterations. More
 would mean that the loop can hardly open as far as required."""
 
 
-def stiffness_exponent(drive: DriveParameters) -> Number:
-    """Exponent m [1] of K_N ~ P^m of the contact pair at zero torque; 1 for a drive without a contact pair.
+def stiffness_exponent(drive_parameters: DriveParameters) -> Number:
+    """Exponent m [1] of the contact pair's normal stiffness ~ pressure^m, at zero torque.
 
-    m = 1 holds for rough surfaces at any pressure and for Hu's law: T_h = M_f (1 - exp(-K_h phi/M_f)), as in
-    Dahl's friction model.
+    1 for a drive without a contact pair. m = 1 holds for rough surfaces at any pressure and for Hu's law: the
+    hysteresis torque on the virgin curve is then M_f (1 - exp(-K_h phi/M_f)) at the wind-up phi, with
+    friction limit M_f and initial stiffness K_h, as in Dahl's friction model.
     """
-    if not isinstance(drive, ContactPairDriveParameters):
+    if not isinstance(drive_parameters, ContactPairDriveParameters):
         return 1.0
-    spots, u = drive.pair_law.spot_distribution(), pair_log_area(drive, 0.0)
+    spots, u = (
+        drive_parameters.contact_pair_law.spot_distribution(),
+        contact_pair_log_area(drive_parameters, 0.0),
+    )
     power = spots.log_sum_over_spots("load", 0.0)[1]
     return spots.sum_over_spots_derivative("normal", u) / (spots.sum_over_spots("normal", u) * power)
 
 
 def slider_shares(
-    exponent: Number, remaining_friction_shares: Sequence[float] = REMAINING_FRICTION_SHARES
+    stiffness_exponent: Number, remaining_friction_shares: Sequence[float] = REMAINING_FRICTION_SHARES
 ) -> tuple[list[Number], list[Number]]:
-    """Share of each slider in the stiffness K_h and in the friction limit M_f [1]; the sum of each is 1.
+    """Shares [1] of each slider in the total stiffness K_h and in the total friction limit M_f.
 
-    exponent                  : exponent m of K_N ~ P^m
-    remaining_friction_shares : values of s [1], decreasing from 1 to 0, that separate the sliders
+    The shares in K_h have the sum 1, and those in M_f, too.
+
+    stiffness_exponent        : exponent m of the contact pair's normal stiffness ~ pressure^m
+    remaining_friction_shares : shares s [1] of the friction that is not mobilised yet, decreasing from 1 to
+                                0, that separate the sliders
     """
-    rate = [remaining**exponent if remaining else 0.0 for remaining in remaining_friction_shares]
+    rate = [remaining**stiffness_exponent if remaining else 0.0 for remaining in remaining_friction_shares]
     used_shares = [
-        1.0 - remaining - _relative_wind_up(remaining, exponent) * r if remaining else 1.0
+        1.0 - remaining - _relative_wind_up(remaining, stiffness_exponent) * r if remaining else 1.0
         for remaining, r in zip(remaining_friction_shares, rate, strict=True)
     ]
     return [a - b for a, b in pairwise(rate)], [b - a for a, b in pairwise(used_shares)]
 
 
-def _relative_wind_up(remaining_friction_share: float, exponent: Number) -> Number:
-    """K_h phi/M_f [1] on the virgin curve at the remaining share s [1]: (1 - s^(1 - m))/(1 - m)."""
+def _relative_wind_up(remaining_friction_share: float, stiffness_exponent: Number) -> Number:
+    """Relative wind-up [1] on the virgin curve at which a share s [1] of friction is not mobilised yet.
+
+    The wind-up phi is divided by friction limit/initial stiffness: K_h phi/M_f = (1 - s^(1 - m))/(1 - m),
+    with `stiffness_exponent` m.
+    """
     logarithm = float(np.log(remaining_friction_share))
-    return -logarithm * exprel((1.0 - exponent) * logarithm)
+    return -logarithm * exprel((1.0 - stiffness_exponent) * logarithm)
 
 
 @dataclass(frozen=True, slots=True)
 class HysteresisSliders(Sliders):
-    """Sliders of the hysteresis of a drive; `stiffness` (n) [N.m/rad].
+    """Spring-slider elements (Jenkins) of a drive's hysteresis, in parallel, between input and output.
 
-    friction_limit : (n) [N.m] of the friction torques; all zero without hysteresis
+    stiffness      : (n) [N.m/rad] of the n springs
+    friction_limit : (n) [N.m] of their torques; all zero without hysteresis
     """
 
     friction_limit: Array
 
     @classmethod
-    def for_drive(cls, drive: DriveParameters, curve: Curve) -> "HysteresisSliders":
-        """Sliders of the hysteresis, from the parameters of a drive and its odd midline `curve`.
+    def from_drive(cls, drive_parameters: DriveParameters, midline_curve: Curve) -> "HysteresisSliders":
+        """Spring-slider elements of the hysteresis, from the parameters of a drive and its midline.
+
+        midline_curve : torque [N.m] as a function of wind-up >= 0 [rad], without hysteresis; it is odd
 
         Raises ValueError if no loop through rated torque can open by hysteresis_loss.
         """
-        half_loop_torque = float(curve.derivatives(0.5 * drive.hysteresis_loss)[0])
-        if not half_loop_torque < 0.5 * drive.rated_torque:
+        half_loop_torque = float(midline_curve.derivatives(0.5 * drive_parameters.hysteresis_loss)[0])
+        if not half_loop_torque < 0.5 * drive_parameters.rated_torque:
             raise ValueError(
-                f"hysteresis_loss = {drive.hysteresis_loss:g} rad is outside "
-                f"[0, {2.0 * float(curve.inverse(0.5 * drive.rated_torque)):g}) rad: "
+                f"hysteresis_loss = {drive_parameters.hysteresis_loss:g} rad is outside "
+                f"[0, {2.0 * float(midline_curve.inverse(0.5 * drive_parameters.rated_torque)):g}) rad: "
                 "above it the hysteresis friction would exceed half of the rated torque"
             )
         springs, friction = (
-            np.array(share, dtype=np.float64) for share in slider_shares(stiffness_exponent(drive))
+            np.array(share, dtype=np.float64) for share in slider_shares(stiffness_exponent(drive_parameters))
         )
-        unit_sliders = cls(_initial_stiffness(drive, curve, half_loop_torque) * springs, friction)
-        limit = _find_limit_torque(drive, curve, unit_sliders, half_loop_torque) * friction
+        unit_sliders = cls(
+            _initial_stiffness(drive_parameters, midline_curve, half_loop_torque) * springs, friction
+        )
+        limit = _find_limit_torque(drive_parameters, midline_curve, unit_sliders, half_loop_torque) * friction
         return replace(unit_sliders, friction_limit=limit)
 
     @property
-    def is_active(self) -> bool:
+    def has_friction(self) -> bool:
         """Whether the drive has hysteresis."""
         return bool(self.friction_limit[-1] > 0.0)
 
     @property
     def characteristic_wind_up(self) -> float:
-        """Characteristic wind-up M_f/K_h [rad] of the hysteresis."""
+        """Characteristic wind-up [rad] of the hysteresis: friction limit divided by initial stiffness."""
         return float(np.sum(self.friction_limit) / np.sum(self.stiffness))
 
-    def unloading_friction(self, curve: Curve, torque: float, half_opening_angle: float) -> float:
+    def unloading_friction(
+        self, midline_curve: Curve, reversal_torque: float, half_opening_angle: float
+    ) -> float:
         """Negative friction torque [N.m] after unloading from a torque to the wind-up half_opening_angle.
 
-        torque, half_opening_angle : [N.m], [rad]
+        reversal_torque    : [N.m] torque at which unloading begins
+        half_opening_angle : [rad] wind-up at the end of the unloading
 
         Masing's rule gives the friction. If it equals the torque of the midline at half_opening_angle, the
         total torque is zero there: at zero torque the branches are then 2 half_opening_angle apart.
         """
-        turn_wind_up = float(self.solve_wind_up(curve, HISTORY_LAYOUT.virgin_history(), torque))
+        turn_wind_up = float(
+            self.solve_wind_up(midline_curve, HISTORY_LAYOUT.virgin_history(), reversal_torque)
+        )
         friction_back, friction_at_turn = self.advance(
             HISTORY_LAYOUT.virgin_history(), [0.5 * (turn_wind_up - half_opening_angle), turn_wind_up]
         ).traction
         return float(2.0 * friction_back - friction_at_turn)
 
-    def advance(self, history: Array, phi: ArrayLike) -> SliderUpdate:
-        """Advance the sliders of the hysteresis from a history (..., n) to wind-ups phi (...) [rad]."""
-        variables = HISTORY_LAYOUT.split(history)
-        increment = np.asarray(phi, dtype=np.float64) - variables["wind_up"]
+    def advance(self, history_variables: Array, wind_up: ArrayLike) -> SliderUpdate:
+        """Advance the spring-slider elements from the history variables (..., n) to wind-ups (...) [rad]."""
+        variables = HISTORY_LAYOUT.split(history_variables)
+        increment = np.asarray(wind_up, dtype=np.float64) - variables["wind_up"]
         return self.advance_1d(variables["force"], increment, self.friction_limit, self.friction_limit)
 
-    def pack_history(self, slider_update: SliderUpdate, phi: ArrayLike, total_loss: Array) -> Array:
-        """Pack the history variables (..., n) of the hysteresis at wind-ups phi (...) [rad].
+    def pack_history(self, slider_update: SliderUpdate, wind_up: ArrayLike, total_loss: Array) -> Array:
+        """Pack the n history variables (..., n) of the hysteresis at wind-ups (...) [rad].
 
         The loss total_loss (...) [J] is the energy dissipated so far.
         """
         return HISTORY_LAYOUT.join(
-            {"force": slider_update.force, "wind_up": phi, "loss": total_loss}, *total_loss.shape
+            {"force": slider_update.force, "wind_up": wind_up, "loss": total_loss}, *total_loss.shape
         )
 
-    def solve_wind_up(self, curve: Curve, history: Array, torque: ArrayLike) -> Array:
+    def solve_wind_up(
+        self, midline_curve: Curve, history_variables: Array, target_torque: ArrayLike
+    ) -> Array:
         """Wind-up (...) [rad] at which midline and friction together carry torques (...) [N.m].
 
-        history : history variables (..., n) at the start of the path
+        history_variables : (..., n) the n history variables at the start of the path
 
         Safeguarded Newton iteration: the total torque increases monotonically with the wind-up. The iteration
         starts at the present wind-up, limited to the range in which not all sliders slip.
         """
-        tau, friction_sum = np.asarray(torque, dtype=np.float64), float(np.sum(self.friction_limit))
-        slipping = curve.odd_inverse(np.stack([tau - friction_sum, tau + friction_sum]))
-        phi = np.clip(HISTORY_LAYOUT.split(history)["wind_up"], *slipping)
+        tau, friction_sum = np.asarray(target_torque, dtype=np.float64), float(np.sum(self.friction_limit))
+        slipping = midline_curve.odd_inverse(np.stack([tau - friction_sum, tau + friction_sum]))
+        phi = np.clip(HISTORY_LAYOUT.split(history_variables)["wind_up"], *slipping)
         low, high = np.full(tau.shape, -np.inf), np.full(tau.shape, np.inf)
-        for _ in range(MAX_ITERATIONS):
-            load, stiffness = curve.derivatives(np.abs(phi), 1)
-            update = self.advance(history, phi)
+        for _ in range(MAX_INVERSION_ITERATIONS):
+            load, stiffness = midline_curve.derivatives(np.abs(phi), 1)
+            update = self.advance(history_variables, phi)
             residual = tau - (np.copysign(load, phi) + update.traction)
             low, high = np.where(residual > 0.0, phi, low), np.where(residual < 0.0, phi, high)
             step = phi + residual / (stiffness + update.tangent)
@@ -185,23 +208,33 @@ class HysteresisSliders(Sliders):
         return phi
 
 
-def _initial_stiffness(drive: DriveParameters, curve: Curve, half_loop_torque: float) -> float:
-    """Initial stiffness K_h [N.m/rad] of the hysteresis.
+def _initial_stiffness(
+    drive_parameters: DriveParameters, midline_curve: Curve, half_loop_torque: float
+) -> float:
+    """Initial stiffness K_h [N.m/rad] of the hysteresis: hysteresis_stiffness, or a default if this is 0.
 
     half_loop_torque : [N.m] torque of the midline at half of hysteresis_loss
     """
-    if drive.hysteresis_stiffness > 0.0:
-        return drive.hysteresis_stiffness
-    back = float(curve.inverse(drive.rated_torque - half_loop_torque)) - 0.5 * drive.hysteresis_loss
-    return max(float(curve.stiffness[0]), 2.0 * MIN_UNLOADING_OVER_REVERSAL_WIND_UP * half_loop_torque / back)
+    if drive_parameters.hysteresis_stiffness > 0.0:
+        return drive_parameters.hysteresis_stiffness
+    back = (
+        float(midline_curve.inverse(drive_parameters.rated_torque - half_loop_torque))
+        - 0.5 * drive_parameters.hysteresis_loss
+    )
+    return max(
+        float(midline_curve.stiffness[0]), 2.0 * MIN_UNLOADING_OVER_REVERSAL_WIND_UP * half_loop_torque / back
+    )
 
 
 def _find_limit_torque(
-    drive: DriveParameters, curve: Curve, sliders_with_unit_limit: HysteresisSliders, half_loop_torque: float
+    drive_parameters: DriveParameters,
+    midline_curve: Curve,
+    sliders_with_unit_limit: HysteresisSliders,
+    half_loop_torque: float,
 ) -> float:
-    """Friction limit M_f [N.m] for which the loop through rated torque opens by hysteresis_loss.
+    """Find the friction limit M_f [N.m] at which the hysteresis loop through rated torque has a given width.
 
-    A fixed-point iteration finds M_f.
+    The width is the wind-up between both branches at zero torque: hysteresis_loss.
 
     sliders_with_unit_limit : sliders with the sum of limits 1 N.m
     half_loop_torque        : [N.m] midline torque at half of hysteresis_loss. At zero total torque the
@@ -210,20 +243,23 @@ def _find_limit_torque(
     Raises ValueError if hysteresis_stiffness is too small for such a loop.
     """
     limit = half_loop_torque
-    for _ in range(MAX_LIMIT_ITERATIONS):
+    for _ in range(MAX_FRICTION_LIMIT_ITERATIONS):
         if limit == 0.0:
             return limit
         sliders = replace(
             sliders_with_unit_limit, friction_limit=limit * sliders_with_unit_limit.friction_limit
         )
         previous = limit
-        opening = sliders.unloading_friction(curve, drive.rated_torque, 0.5 * drive.hysteresis_loss)
+        opening = sliders.unloading_friction(
+            midline_curve, drive_parameters.rated_torque, 0.5 * drive_parameters.hysteresis_loss
+        )
         limit *= half_loop_torque / opening if opening > 0.0 else np.inf
-        if not limit < drive.rated_torque:
+        if not limit < drive_parameters.rated_torque:
             break
-        if abs(limit - previous) <= LIMIT_TOLERANCE * limit:
+        if abs(limit - previous) <= FRICTION_LIMIT_TOLERANCE * limit:
             return previous
     raise ValueError(
-        f"hysteresis_stiffness = {drive.hysteresis_stiffness:g} N.m/rad is too small for a loop through "
-        f"rated torque that opens by {drive.hysteresis_loss:g} rad; allowed are 0 and larger ones"
+        f"hysteresis_stiffness = {drive_parameters.hysteresis_stiffness:g} N.m/rad is too small for a loop "
+        f"up to rated torque with hysteresis_loss = {drive_parameters.hysteresis_loss:g} rad; expected a "
+        "larger value, or 0 for the default"
     )

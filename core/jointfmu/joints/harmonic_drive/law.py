@@ -11,7 +11,7 @@ from ...contact.surface import ArealSurface, ElasticConstants, ElasticPlasticCon
 from ...quantity import Interval, Number, ParameterLimit, choice_field, group_field, quantity_field, select
 from .drive import DriveParameters, lost_motion_angle
 
-SATURATION_OVER_RATED_TORQUE = 2.0
+SATURATION_TORQUE_OVER_RATED_TORQUE = 2.0
 """Torque T_m over rated torque [1] at which the contact pressure saturates: for larger torques the pressure
 tends to the value that it would have at T_m without saturation."""
 _SURFACE_SCAN_LENGTH = 0.5e-3
@@ -24,7 +24,7 @@ class ContactPairDriveParameters(DriveParameters):
 
     The parameters of the interface law are added by subclasses.
 
-    Fields with calibration=True were fitted to published points.
+    Fields with is_calibrated=True were fitted to published points.
     """
 
     mu: float = quantity_field("1", "coefficient of static friction, if traction is real_area", gt=0.0)
@@ -39,14 +39,14 @@ class ContactPairDriveParameters(DriveParameters):
         "m", "installation eccentricity of flexspline and bearing", ge=0.0, lt=1e-3
     )
     K_FTS0: float = quantity_field(
-        "N.m/rad", "stiffness K_FTS of circular spline and flexspline", gt=0.0, calibration=True
+        "N.m/rad", "stiffness K_FTS of circular spline and flexspline", gt=0.0, is_calibrated=True
     )
     max_torque: float = quantity_field("N.m", "largest torque of the tabulated law", gt=0.0)
     zero_torque_pressure: float = quantity_field(
-        "Pa", "peak contact pressure without torque, at the optimum deformation", gt=0.0, calibration=True
+        "Pa", "peak contact pressure without torque, at the optimum deformation", gt=0.0, is_calibrated=True
     )
     rated_pressure: float = quantity_field(
-        "Pa", "peak contact pressure at rated torque, at the optimum deformation", gt=0.0, calibration=True
+        "Pa", "peak contact pressure at rated torque, at the optimum deformation", gt=0.0, is_calibrated=True
     )
     torque_smoothing: float = quantity_field(
         "N.m", "torque below which the pressure hardly increases", gt=0.0
@@ -58,15 +58,15 @@ class ContactPairDriveParameters(DriveParameters):
         "Pa/m2",
         "loss of peak pressure per squared offset of radial_deformation from its optimum",
         ge=0.0,
-        calibration=True,
+        is_calibrated=True,
     )
     eccentricity_loss: float = quantity_field(
-        "Pa/m", "loss of peak pressure per unit of eccentricity", ge=0.0, calibration=True
+        "Pa/m", "loss of peak pressure per unit of eccentricity", ge=0.0, is_calibrated=True
     )
 
     @property
     @abstractmethod
-    def pair_law(self) -> Hu2023 | RoughnessLaw:
+    def contact_pair_law(self) -> Hu2023 | RoughnessLaw:
         """Interface law of the contact between flexspline and bearing.
 
         Its load is a power of the area of the largest spot.
@@ -74,17 +74,17 @@ class ContactPairDriveParameters(DriveParameters):
 
     @property
     @abstractmethod
-    def pair_stiffness_factor(self) -> Number:
-        """Factor [m2] from the tangential stiffness [N/m] of the pair's law to K_TS [N.m/rad]."""
+    def contact_pair_stiffness_factor(self) -> Number:
+        """Torsional stiffness K_TS [N.m/rad] of the contact pair per tangential stiffness of its law [m2]."""
 
     @property
     def max_table_torque(self) -> Number:
-        """Torque [N.m] at the end of the table: max_torque."""
+        """Torque [N.m] at the end of the midline's table: max_torque."""
         return self.max_torque
 
     @property
     def K_FTS(self) -> Number:
-        """Stiffness K_FTS [N.m/rad] of circular spline and flexspline: K_FTS0."""
+        """Stiffness K_FTS [N.m/rad] of circular spline and flexspline: the parameter K_FTS0."""
         return self.K_FTS0
 
     def pressure(self, torque: Number) -> Number:
@@ -93,7 +93,7 @@ class ContactPairDriveParameters(DriveParameters):
 
     def find_parameter_limits(self) -> list[ParameterLimit]:
         """Limits of those parameters whose allowed interval depends on other parameters."""
-        no_contact = "above it the pair has no contact at zero torque"
+        no_contact = "outside this range the contact pair is open at zero torque"
         zero, loss, best = self.zero_torque_pressure, self.deformation_loss, self.optimum_deformation
         with np.errstate(over="ignore"):
             reach = np.sqrt(zero / np.maximum(loss, 1e-290))
@@ -143,8 +143,11 @@ class HarmonicDriveParameters(ContactPairDriveParameters):
     )
 
     @property
-    def pair_law(self) -> Hu2023:
-        """Law of Hu 2023 as printed, for the spots of one mesh node; side1 has the lower yield strength."""
+    def contact_pair_law(self) -> Hu2023:
+        """Law of Hu 2023 as printed, for the contact spots at one node of the paper's mesh.
+
+        side1 is the body with the lower yield strength.
+        """
         cup, ring = self.flexspline, self.bearing
         swap = ring.sigma_y < cup.sigma_y
         E, nu = select(swap, ring.E, cup.E), select(swap, ring.nu, cup.nu)
@@ -165,30 +168,34 @@ class HarmonicDriveParameters(ContactPairDriveParameters):
     def law(self) -> Hu2023:
         """Corrected law of Hu 2023 for the whole nominal contact area.
 
-        The stiffness of the drive does not come from it, but from `pair_law`.
+        The stiffness of the drive does not come from it, but from `contact_pair_law`.
 
         Its base radius r_m is half of the scan length: with r_m of the paper no spot would have stiffness.
         """
         surface = replace(self.surface, r_m=0.5 * _SURFACE_SCAN_LENGTH)
-        return replace(self.pair_law, surface=surface, A_0=self.A_0, reading="corrected")
+        return replace(self.contact_pair_law, surface=surface, A_0=self.A_0, reading="corrected")
 
     @property
-    def pair_stiffness_factor(self) -> Number:
-        """Factor from K_T of a node to K_TS: drive_scale, number of nodes and diameter, Eq. 45 as printed.
+    def contact_pair_stiffness_factor(self) -> Number:
+        """Factor [m] from the tangential stiffness K_T of a mesh node to K_TS of the contact pair.
 
-        The sum of Eq. 45 has the unit newton; the paper reads it as N.m/rad, and so does this class.
+        The factor is the product of drive_scale, number of nodes and diameter: Eq. 45 as printed. The sum of
+        Eq. 45 has the unit newton; the paper reads it as N.m/rad, and so does this class.
         """
         return self.drive_scale * 2.0 * self.radius * self.A_0 / self.node_area
 
     @property
-    def pair_stiffness_scale(self) -> Number:
-        """Ratio [1] of K_TS of the drive to K_TS in the figures of the paper: drive_scale."""
+    def contact_pair_stiffness_scale(self) -> Number:
+        """Ratio [1] of the contact pair's stiffness K_TS to K_TS in the figures of the paper: drive_scale."""
         return self.drive_scale
 
     def find_table_parameter_limits(self) -> list[ParameterLimit]:
-        """Intervals for which all spots stay elastic up to max_torque, as the printed law assumes."""
+        """Limits of the yield strengths above which all spots stay elastic up to max_torque.
+
+        The printed law assumes elastic spots.
+        """
         highest = peak_pressure(self, self.max_torque)[0]
-        law = self.pair_law
+        law = self.contact_pair_law
         min_yield_strength = highest * law.sigma_y / elastic_pressure(law)
         why = "spots of the contact pair would yield below max_torque"
         return [
@@ -206,7 +213,7 @@ class RoughHarmonicDriveParameters(RoughSurfaces, ContactPairDriveParameters):
     bearing: ElasticConstants = group_field("outer ring of the flexible bearing")
 
     @property
-    def pair_law(self) -> RoughnessLaw:
+    def contact_pair_law(self) -> RoughnessLaw:
         """Law `roughness` of the whole contact pair, evaluated at its mean pressure."""
         return RoughnessLaw(
             h=self.h,
@@ -222,88 +229,107 @@ class RoughHarmonicDriveParameters(RoughSurfaces, ContactPairDriveParameters):
             A_0=self.A_0,
         )
 
-    law = pair_law
+    law = contact_pair_law
 
     @property
-    def pair_stiffness_factor(self) -> Number:
-        """Factor from K_T to K_TS: radius squared [m2]; the normal stiffness adds less than 1e-3."""
+    def contact_pair_stiffness_factor(self) -> Number:
+        """Factor [m2] from the tangential stiffness K_T of the contact to K_TS of the pair: radius squared.
+
+        The normal stiffness adds less than 1e-3 to K_TS.
+        """
         return self.radius**2
 
 
-def peak_pressure(drive: ContactPairDriveParameters, torque: Number) -> tuple[Number, Number]:
-    """Peak contact pressure (...) [Pa] at torques (...) [N.m], and its derivative [Pa/(N.m)].
+def peak_pressure(drive_parameters: ContactPairDriveParameters, torque: Number) -> tuple[Number, Number]:
+    """Peak contact pressure (...) [Pa] at torques T (...) [N.m], and its derivative [Pa/(N.m)].
 
     Pressure at the major axis and the opening of the cup,
     `sqrt(p_0^2 + (p_r^2 - p_0^2) g(t(T))/g(t(T_r))) - loss` with `g(t) = sqrt(t^2 + T_s^2) - T_s`.
-    The peak pressure of a line contact grows with the square root of its load. Here the load has a constant
-    part and a part proportional to |T|, which is smoothed around T = 0.
-    `t(T) = T/(1 + (T/T_m)^4)^(1/4)` tends to T_m = SATURATION_OVER_RATED_TORQUE times the rated torque,
-    because the stiffness of catalogue drives becomes constant. Beyond rated torque this is an extrapolation.
+    Here p_0 and p_r are the pressures at zero and at rated torque T_r, T_s is torque_smoothing, and loss is
+    `peak_pressure_reduction`. The peak pressure of a line contact grows with the square root of its load.
+    Here the load has a constant part and a part proportional to |T|, which is smoothed around T = 0.
+    `t(T) = T/(1 + (T/T_m)^4)^(1/4)` tends to T_m, SATURATION_TORQUE_OVER_RATED_TORQUE times the rated torque:
+    the stiffness of catalogue drives becomes constant. Beyond rated torque this is an extrapolation.
     """
-    smoothing, saturation = drive.torque_smoothing, SATURATION_OVER_RATED_TORQUE * drive.rated_torque
+    smoothing, saturation = (
+        drive_parameters.torque_smoothing,
+        SATURATION_TORQUE_OVER_RATED_TORQUE * drive_parameters.rated_torque,
+    )
 
     def saturate_torque(torque: Number) -> tuple[Number, Number]:
-        """Squared saturated torque t^2 [(N.m)^2], and t dt/dT [N.m]."""
+        """Squared saturated torque t^2 [(N.m)^2] at a torque T, and t dt/dT [N.m]."""
         x = np.minimum(np.maximum(torque / saturation, -1e3), 1e3)
         bend = 1.0 + x**4
         root = np.sqrt(bend)
         return (saturation * x) ** 2 / root, saturation * x / (bend * root)
 
     def smoothed_torque(squared_torque: Number) -> Number:
-        """Magnitude sqrt(t^2 + T_s^2) [N.m] of the saturated torque t, smoothed around zero."""
+        """Magnitude sqrt(t^2 + T_s^2) [N.m] of the saturated torque t, smoothed around zero over T_s."""
         return np.maximum(np.sqrt(squared_torque + smoothing**2), smoothing)  # if smoothing**2 underflows
 
     def smoothed_torque_increase(squared_torque: Number) -> Number:
-        """Function g [N.m] of t^2: smoothed magnitude of the saturated torque, less its value at t = 0."""
+        """Smoothed magnitude [N.m] of the saturated torque t, less its value at t = 0; argument t^2."""
         return squared_torque / (smoothed_torque(squared_torque) + smoothing)
 
-    zero, rated = drive.zero_torque_pressure, drive.rated_pressure
-    factor = (rated**2 - zero**2) / smoothed_torque_increase(saturate_torque(drive.rated_torque)[0])
+    zero, rated = drive_parameters.zero_torque_pressure, drive_parameters.rated_pressure
+    factor = (rated**2 - zero**2) / smoothed_torque_increase(
+        saturate_torque(drive_parameters.rated_torque)[0]
+    )
     square, square_slope = saturate_torque(torque)
     unreduced = np.sqrt(zero**2 + factor * smoothed_torque_increase(square))
-    return unreduced - drive.peak_pressure_reduction, 0.5 * factor * square_slope / smoothed_torque(
-        square
-    ) / unreduced
+    return (
+        unreduced - drive_parameters.peak_pressure_reduction,
+        0.5 * factor * square_slope / smoothed_torque(square) / unreduced,
+    )
 
 
-def pair_log_area(drive: ContactPairDriveParameters, torque: Number) -> Number:
-    """Log-area u (...) [1] of the largest spot of the contact pair at torques (...) [N.m].
+def contact_pair_log_area(drive_parameters: ContactPairDriveParameters, torque: Number) -> Number:
+    """Log-area (...) [1] of the largest contact spot of flexspline and bearing at torques (...) [N.m].
 
-    The log-area follows from the mean pressure of the pair.
+    ln(area of the spot/reference area of the law), from the mean pressure of the contact pair.
     """
-    law = drive.pair_law
+    law = drive_parameters.contact_pair_law
     start, power = law.spot_distribution().log_sum_over_spots("load", 0.0)
-    return (np.log(drive.mean_over_peak * peak_pressure(drive, torque)[0] * law.A_0) - start) / power
+    return (
+        np.log(drive_parameters.mean_over_peak * peak_pressure(drive_parameters, torque)[0] * law.A_0) - start
+    ) / power
 
 
-def pair_stiffness(drive: ContactPairDriveParameters, torque: Number) -> tuple[Number, Number]:
+def contact_pair_stiffness(
+    drive_parameters: ContactPairDriveParameters, torque: Number
+) -> tuple[Number, Number]:
     """Stiffness K_TS (...) [N.m/rad] of the contact pair at torques (...) [N.m], and dK_TS/dT [1/rad].
 
     K_TS is computed from the mean pressure, as the tangential stiffness of a point is nearly proportional to
     its pressure.
     """
-    peak, pressure_slope = peak_pressure(drive, torque)
-    spots, u = drive.pair_law.spot_distribution(), pair_log_area(drive, torque)
+    peak, pressure_slope = peak_pressure(drive_parameters, torque)
+    spots, u = (
+        drive_parameters.contact_pair_law.spot_distribution(),
+        contact_pair_log_area(drive_parameters, torque),
+    )
     power = spots.log_sum_over_spots("load", 0.0)[1]
     slope = spots.sum_over_spots_derivative("tangential", u) / (power * peak)
-    return drive.pair_stiffness_factor * spots.sum_over_spots(
+    return drive_parameters.contact_pair_stiffness_factor * spots.sum_over_spots(
         "tangential", u
-    ), drive.pair_stiffness_factor * slope * pressure_slope
+    ), drive_parameters.contact_pair_stiffness_factor * slope * pressure_slope
 
 
-def drive_stiffness(drive: ContactPairDriveParameters, torque: Number) -> tuple[Number, Number]:
+def drive_stiffness(drive_parameters: ContactPairDriveParameters, torque: Number) -> tuple[Number, Number]:
     """Stiffness K_WTS (...) [N.m/rad] of the drive without lost motion, Eq. 46, and dK_WTS/dT [1/rad].
 
-    1/K_WTS = 1/K_FTS + 1/K_TS.
+    1/K_WTS = 1/K_FTS + 1/K_TS: circular spline and flexspline in series with the contact pair.
     """
-    pair, growth = pair_stiffness(drive, torque)
-    total = 1.0 / (1.0 / drive.K_FTS0 + 1.0 / pair)
+    pair, growth = contact_pair_stiffness(drive_parameters, torque)
+    total = 1.0 / (1.0 / drive_parameters.K_FTS0 + 1.0 / pair)
     return total, (total / pair) ** 2 * growth
 
 
-def stiffness_with_play(drive: ContactPairDriveParameters, torque: Number) -> tuple[Number, Number]:
+def stiffness_with_play(
+    drive_parameters: ContactPairDriveParameters, torque: Number
+) -> tuple[Number, Number]:
     """Stiffness K_WTS (...) [N.m/rad] of the drive with its lost motion in series, and dK_WTS/dT [1/rad]."""
-    K, growth = drive_stiffness(drive, torque)
-    _, compliance, change = lost_motion_angle(drive, torque)
+    K, growth = drive_stiffness(drive_parameters, torque)
+    _, compliance, change = lost_motion_angle(drive_parameters, torque)
     softer = 1.0 + K * compliance
     return K / softer, (growth - K * K * change) / softer**2

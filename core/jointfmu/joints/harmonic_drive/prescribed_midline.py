@@ -22,7 +22,7 @@ from ...quantity import (
     select,
     series_field,
 )
-from .drive import PLAY_OVER_RATED_TORQUE, DriveParameters, lost_motion_angle
+from .drive import PLAY_TORQUE_OVER_RATED_TORQUE, DriveParameters, lost_motion_angle
 
 DEFAULT_CORNER_HALF_WIDTH_OVER_WIND_UP = 0.04
 """Default half-width of a smoothed corner over its wind-up [1]: for catalogue drives the angle at a corner is
@@ -31,7 +31,7 @@ MIN_CORNER_HALF_WIDTH_OVER_WIND_UP = 1e-6
 """Smallest half-width of a corner over its wind-up [1], used if `corner` is 0.
 
 The angle at a corner is within 1e-7 of the lines."""
-MAX_STIFFNESS = 1e12
+MAX_DRIVE_STIFFNESS = 1e12
 """Largest stiffness of a drive [N.m/rad]: more than a solid steel shaft of its size has."""
 MAX_TABLE_POINTS = 1000
 """Largest number of points of a measured table."""
@@ -44,16 +44,16 @@ PLAY_NODE_COUNT = 60
 """Number of nodes for the lost motion on the first line of a catalogue drive [1].
 
 The torque error is below 1e-8 rated_torque."""
-PLAY_END_OVER_PLAY_TORQUE = 8.0
+PLAY_END_TORQUE_OVER_PLAY_TORQUE = 8.0
 """Torque over T_p at which the lost motion has ended [1]: 2e-7 of lost_motion is then missing.
 
-T_p is the torque of PLAY_OVER_RATED_TORQUE."""
+T_p is the torque of PLAY_TORQUE_OVER_RATED_TORQUE."""
 _SEGMENT_SAMPLE_POINTS = np.linspace(0.0, 1.0, 33)
 """Relative positions in a segment [1] at which the stiffness of the midline is checked."""
 
 
 class SplineNode(NamedTuple):
-    """Node of the quintic spline of the midline.
+    """Node of the quintic spline of a drive's midline: torque as a function of wind-up.
 
     angle, torque, stiffness : wind-up [rad], torque [N.m] and stiffness [N.m/rad]
     stiffness_slope_before, stiffness_slope_after : derivative of the stiffness [N.m/rad2] on the side of
@@ -69,10 +69,11 @@ class SplineNode(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class PrescribedDriveParameters(DriveParameters):
-    """Harmonic drive with a spline for its midline: torque over wind-up without hysteresis.
+    """Parameters of a harmonic drive whose midline, torque as a function of wind-up, is a stated spline.
 
-    The parts K_FTS and K_TS of the stiffness are unknown. K_FTS is set to twice the largest K_WTS: so K_TS
-    equals K_FTS where the drive is stiffest, and is finite everywhere. There is no contact pressure: it is 0.
+    The parts K_FTS (circular spline and flexspline) and K_TS (contact pair) of the drive's stiffness K_WTS
+    are unknown. K_FTS is set to twice the largest K_WTS: so K_TS equals K_FTS where the drive is stiffest,
+    and is finite everywhere. The contact pressure is unknown and set to 0.
     """
 
     unknown_outputs: ClassVar[tuple[str, ...]] = ("K_TS",)
@@ -80,7 +81,7 @@ class PrescribedDriveParameters(DriveParameters):
 
     @abstractmethod
     def make_midline_nodes(self) -> Sequence[SplineNode]:
-        """Spline nodes of the midline (torque over wind-up) from zero wind-up on; the midline is odd."""
+        """Make the spline nodes of the midline, torque as a function of wind-up, for wind-ups >= 0."""
 
     @property
     def law(self) -> None:
@@ -89,11 +90,11 @@ class PrescribedDriveParameters(DriveParameters):
 
     @property
     def ramp_torque(self) -> Number:
-        """Torque [N.m] at the end of load ramps: the last torque of the table."""
+        """Torque [N.m] at the end of load ramps: the last torque of the midline's table."""
         return self.max_table_torque
 
     def pressure(self, torque: Number) -> Number:
-        """Contact pressure: 0 [Pa]."""
+        """Contact pressure (...) [Pa]: set to 0, as a prescribed midline does not determine it."""
         return 0.0 * torque
 
 
@@ -101,17 +102,17 @@ class PrescribedDriveParameters(DriveParameters):
 class CatalogueDriveParameters(PrescribedDriveParameters):
     """Parameters of a harmonic drive with the stiffnesses K1, K2, K3 of its catalogue.
 
-    The angle theta(T) has the slope 1/K1 up to the torque T1, 1/K2 up to T2, and 1/K3 beyond. Around the
-    corner at the wind-up theta_i, within theta_i (1 +- corner), the stiffness changes from one line to the
-    next by the smooth step 3 t^2 - 2 t^3. Outside this range torque and angle are exactly those of the lines.
-    The torque is twice continuously differentiable everywhere. With corner = 0 the angles are those of the
-    lines, and the stiffness jumps at T1 and T2 (within MIN_CORNER_HALF_WIDTH_OVER_WIND_UP): a kink
-    without an event.
+    The wind-up as a function of the torque consists of three lines, with the slope 1/K1 up to the torque T1,
+    1/K2 up to T2, and 1/K3 beyond. Around the corner at the wind-up theta_i, within theta_i (1 +- corner),
+    the stiffness changes from one line to the next by a smooth step. Outside this range torque and angle are
+    exactly those of the lines. The torque is twice continuously differentiable everywhere. With corner = 0
+    the angles are those of the lines, and the stiffness jumps at T1 and T2 (within
+    MIN_CORNER_HALF_WIDTH_OVER_WIND_UP): a kink without an event.
     """
 
-    K1: float = quantity_field("N.m/rad", "stiffness below T1", gt=0.0, le=MAX_STIFFNESS)
-    K2: float = quantity_field("N.m/rad", "stiffness between T1 and T2", gt=0.0, le=MAX_STIFFNESS)
-    K3: float = quantity_field("N.m/rad", "stiffness above T2", gt=0.0, le=MAX_STIFFNESS)
+    K1: float = quantity_field("N.m/rad", "stiffness below T1", gt=0.0, le=MAX_DRIVE_STIFFNESS)
+    K2: float = quantity_field("N.m/rad", "stiffness between T1 and T2", gt=0.0, le=MAX_DRIVE_STIFFNESS)
+    K3: float = quantity_field("N.m/rad", "stiffness above T2", gt=0.0, le=MAX_DRIVE_STIFFNESS)
     T1: float = quantity_field("N.m", "torque at the first corner", gt=0.0)
     T2: float = quantity_field("N.m", "torque at the second corner", gt=0.0)
     corner: float = quantity_field(
@@ -127,13 +128,13 @@ class CatalogueDriveParameters(PrescribedDriveParameters):
 
     def find_parameter_limits(self) -> list[ParameterLimit]:
         """Limits of those parameters whose allowed interval depends on other parameters."""
-        first, second = self.corner_angles
+        first, second = self.corner_wind_ups
         return [
             *super().find_parameter_limits(),
             ParameterLimit("T2", Interval.from_bounds(gt=self.T1), "it must exceed T1"),
             ParameterLimit(
                 "K1",
-                Interval.from_bounds(gt=self._min_first_stiffness, le=MAX_STIFFNESS),
+                Interval.from_bounds(gt=self._min_first_stiffness, le=MAX_DRIVE_STIFFNESS),
                 "it is too far below K2 for smooth corners at T1 and T2; check the value and the unit of K1",
             ),
             ParameterLimit(
@@ -147,19 +148,22 @@ class CatalogueDriveParameters(PrescribedDriveParameters):
                     ge=0.0,
                     le=select(
                         self._first_line_torque
-                        > PLAY_END_OVER_PLAY_TORQUE * PLAY_OVER_RATED_TORQUE * self.rated_torque,
+                        > PLAY_END_TORQUE_OVER_PLAY_TORQUE
+                        * PLAY_TORQUE_OVER_RATED_TORQUE
+                        * self.rated_torque,
                         1.0,
                         0.0,
                     ),
                 ),
-                f"T1 must be above {PLAY_END_OVER_PLAY_TORQUE * PLAY_OVER_RATED_TORQUE:g} rated_torque, "
-                "where play ends",
+                "with lost motion, T1 must be above "
+                f"{PLAY_END_TORQUE_OVER_PLAY_TORQUE * PLAY_TORQUE_OVER_RATED_TORQUE:g} rated_torque, where "
+                "the play ends",
             ),
         ]
 
     @property
-    def corner_angles(self) -> tuple[Number, Number]:
-        """Wind-up [rad] of the lines at T1 and T2."""
+    def corner_wind_ups(self) -> tuple[Number, Number]:
+        """Wind-ups [rad] of the catalogue's lines at the corners, at the torques T1 and T2."""
         first = self.T1 / self.K1
         return first, first + (self.T2 - self.T1) / self.K2
 
@@ -167,26 +171,27 @@ class CatalogueDriveParameters(PrescribedDriveParameters):
     def _min_first_stiffness(self) -> Number:
         """Smallest stiffness K1 [N.m/rad] at which the rounded corners at T1 and T2 do not overlap.
 
-        The half-width of a corner is a share of its wind-up, which grows as K1 falls; here the stated share,
-        at most the default one.
+        The half-width of a corner is the share `corner` of its wind-up, here at most the default share. The
+        wind-up grows as K1 falls.
         """
         corner = np.minimum(self.corner, DEFAULT_CORNER_HALF_WIDTH_OVER_WIND_UP)
         torque_ratio = self.T1 / np.maximum(self.T2 - self.T1, self.T1)
         return 2.0 * corner / (1.0 - corner) * self.K2 * torque_ratio
 
     @property
-    def corner_half_width_ratio(self) -> Number:
-        """Half-width of a smoothed corner over its wind-up [1].
+    def corner_half_width_over_wind_up(self) -> Number:
+        """Half-width of a smoothed corner divided by the wind-up at the corner [1].
 
-        The ratio is at least MIN_CORNER_HALF_WIDTH_OVER_WIND_UP.
+        At least MIN_CORNER_HALF_WIDTH_OVER_WIND_UP.
         """
         return np.maximum(self.corner, MIN_CORNER_HALF_WIDTH_OVER_WIND_UP)
 
     @property
     def max_table_torque(self) -> Number:
-        """Torque [N.m] at the end of the table: max_torque, but at least T2 plus the width of its corner."""
+        """Torque [N.m] at the end of the midline: max_torque, but at least that at the end of corner T2."""
         return np.maximum(
-            self.max_torque, self.T2 + 2.0 * self.corner_half_width_ratio * self.corner_angles[1] * self.K3
+            self.max_torque,
+            self.T2 + 2.0 * self.corner_half_width_over_wind_up * self.corner_wind_ups[1] * self.K3,
         )
 
     @property
@@ -200,14 +205,14 @@ class CatalogueDriveParameters(PrescribedDriveParameters):
 
     @property
     def _first_line_torque(self) -> Number:
-        """Torque [N.m] at the end of the first line, where the first corner begins."""
-        return self.T1 - self.K1 * self.corner_half_width_ratio * self.corner_angles[0]
+        """Torque [N.m] at the end of the catalogue's first line, where the first smoothed corner begins."""
+        return self.T1 - self.K1 * self.corner_half_width_over_wind_up * self.corner_wind_ups[0]
 
     def make_midline_nodes(self) -> list[SplineNode]:
         """Make the spline nodes of the midline: lost motion, both ends of each corner, end of the table."""
-        (first, second), (K1, K2, K3) = self.corner_angles, (self.K1, self.K2, self.K3)
-        first_width = self.corner_half_width_ratio * first
-        second_width = self.corner_half_width_ratio * second
+        (first, second), (K1, K2, K3) = self.corner_wind_ups, (self.K1, self.K2, self.K3)
+        first_width = self.corner_half_width_over_wind_up * first
+        second_width = self.corner_half_width_over_wind_up * second
         end = self.max_table_torque
         play_angle = lost_motion_angle(self, self._first_line_torque)[0]
         return [
@@ -220,9 +225,10 @@ class CatalogueDriveParameters(PrescribedDriveParameters):
         ]
 
     def _play_nodes(self) -> list[SplineNode]:
-        """Nodes of the first catalogue line in series with the lost motion; denser at small torque."""
+        """Spline nodes of the first catalogue line in series with lost motion; denser at small torque."""
         end_torque = np.minimum(
-            PLAY_END_OVER_PLAY_TORQUE * PLAY_OVER_RATED_TORQUE * self.rated_torque, self._first_line_torque
+            PLAY_END_TORQUE_OVER_PLAY_TORQUE * PLAY_TORQUE_OVER_RATED_TORQUE * self.rated_torque,
+            self._first_line_torque,
         )
         nodes = []
         for position in np.arange(PLAY_NODE_COUNT) / PLAY_NODE_COUNT:
@@ -236,7 +242,7 @@ class CatalogueDriveParameters(PrescribedDriveParameters):
 
 @dataclass(frozen=True, kw_only=True)
 class MeasuredMidline:
-    """Measured points of the midline (torque over wind-up), without zero load; torque and angle increase.
+    """Measured points of the midline: torque and wind-up, both increasing, without the point at zero load.
 
     Raises ValueError if both columns do not have the same number of points, 2 to MAX_TABLE_POINTS, or do not
     increase.
@@ -250,8 +256,8 @@ class MeasuredMidline:
         counts = len(self.torque), len(self.angle)
         if counts[0] != counts[1] or not 2 <= counts[0] <= MAX_TABLE_POINTS:
             raise ValueError(
-                f"table.torque and table.angle have {counts[0]} and {counts[1]} points, "
-                f"allowed is 2 to {MAX_TABLE_POINTS}, the same of both"
+                f"table.torque and table.angle have {counts[0]} and {counts[1]} numbers; "
+                f"expected the same number, from 2 to {MAX_TABLE_POINTS}"
             )
         for name, unit in (("torque", "N.m"), ("angle", "rad")):
             values = getattr(self, name)
@@ -268,7 +274,7 @@ class MeasuredDriveParameters(PrescribedDriveParameters):
     def find_parameter_limits(self) -> list[ParameterLimit]:
         """Limits of those parameters whose allowed interval depends on other parameters."""
         no_play = ParameterLimit(
-            "lost_motion", Interval.from_bounds(ge=0.0, le=0.0), "a measured midline has it already"
+            "lost_motion", Interval.from_bounds(ge=0.0, le=0.0), "the measured midline contains it already"
         )
         return [*super().find_parameter_limits(), no_play]
 
@@ -296,7 +302,7 @@ class TableDriveParameters(MeasuredDriveParameters):
 
     @cached_property
     def K_FTS(self) -> float:
-        """Stiffness K_FTS [N.m/rad]: twice the largest stiffness of the midline."""
+        """Stiffness K_FTS [N.m/rad] of circular spline and flexspline: twice the largest of the midline."""
         columns = np.array(self.make_midline_nodes(), dtype=np.float64).T
         x, y, s, slope_before, slope_after = columns
         return 2.0 * float(
@@ -325,7 +331,10 @@ class TableDriveParameters(MeasuredDriveParameters):
 
 
 def _node_stiffness(segment_widths: Array, secant_stiffnesses: Array) -> Array:
-    """Stiffness (n + 1) at the nodes of an odd midline, from segment widths and secant stiffnesses (n)."""
+    """Stiffness (n + 1) [N.m/rad] at the nodes of an odd midline of n segments.
+
+    segment_widths, secant_stiffnesses : (n) [rad], [N.m/rad] of the segments
+    """
     weight_left = 2.0 * segment_widths[1:] + segment_widths[:-1]
     weight_right = segment_widths[1:] + 2.0 * segment_widths[:-1]
     inner = (weight_left + weight_right) / (
@@ -352,21 +361,21 @@ def _node_stiffness(segment_widths: Array, secant_stiffnesses: Array) -> Array:
 
 def _sample_stiffness(
     segment_widths: Array,
-    torque_steps: Array,
+    torque_increments: Array,
     node_stiffness: Array,
     stiffness_slope_after: Array,
     stiffness_slope_before: Array,
 ) -> Array:
     """Stiffness (m, n) of the midline at m sample points inside each of n quintic segments.
 
-    segment_widths, torque_steps                  : (n) widths and torque increments of the segments
+    segment_widths, torque_increments             : (n) widths and torque increments of the segments
     node_stiffness                                : (n + 1) stiffness at the nodes
     stiffness_slope_after, stiffness_slope_before : (n) derivative of the stiffness at the start and at the
                                                     end of each segment
     """
     t = _SEGMENT_SAMPLE_POINTS[:, None]
     first, last = node_stiffness[:-1], node_stiffness[1:]
-    a2 = torque_steps / segment_widths
+    a2 = torque_increments / segment_widths
     c0 = 0.5 * segment_widths * stiffness_slope_after
     c1 = 0.5 * segment_widths * stiffness_slope_before
     cubic = 30.0 * a2 - 18.0 * first - 12.0 * last - 9.0 * c0 + 3.0 * c1

@@ -22,51 +22,58 @@ from .hysteresis import HysteresisSliders
 from .law import ContactPairDriveParameters, stiffness_with_play
 from .prescribed_midline import PrescribedDriveParameters
 
-MIN_TABLE_STEPS = 160
+MIN_MIDLINE_TABLE_STEPS = 160
 """Initial number of steps of the midline's table [1]; doubled until the table is accurate."""
-MIN_STIFFNESS, MIN_STIFFNESS_MARGIN = 1e-100, 1e-6
+MIN_DRIVE_STIFFNESS, MIN_FLEXSPLINE_OVER_CONTACT_STIFFNESS = 1e-100, 1e-6
 """Smallest K_WTS [N.m/rad], and smallest K_FTS0/K_TS [1], for which the table can be computed."""
-GAUSS_RULE = np.polynomial.legendre.leggauss(4)
+GAUSS_NODES_AND_WEIGHTS = np.polynomial.legendre.leggauss(4)
 """Nodes and weights of the Gauss-Legendre quadrature of dT/K_WTS."""
 HISTORY_LAYOUT = hysteresis.HISTORY_LAYOUT | friction.HISTORY_LAYOUT
 """History variables of the drive: hysteresis, then friction."""
 
 
-def torque_curve(drive: DriveParameters) -> Curve:
-    """Midline: torque [N.m] over wind-up phi >= 0 [rad]; it is odd.
+def torque_curve(drive_parameters: DriveParameters) -> Curve:
+    """Midline of a drive, without hysteresis: torque T [N.m] as a function of wind-up phi >= 0 [rad].
 
-    Prescribed by nodes, or computed: phi is the integral of dT/K_WTS. Nodes of the integral are evenly spaced
-    in asinh(T/T_s), so they are dense around zero torque, where the stiffness changes most. Each step is
+    The midline is odd. It is prescribed by nodes, or computed: phi is the integral of dT/K_WTS, with the
+    stiffness K_WTS of the drive. Nodes of the integral are evenly spaced in asinh(T/T_s), with
+    torque_smoothing T_s, so they are dense around zero torque, where the stiffness changes most. Each step is
     integrated with four Gauss-Legendre nodes.
 
     Raises ValueError if spots of a contact pair would yield within the table, or if K_WTS is out of range.
     """
-    check_limits(drive, drive.find_table_parameter_limits())
-    if isinstance(drive, ContactPairDriveParameters):
-        return refine_curve(lambda steps: _tabulate_midline(drive, steps), MIN_TABLE_STEPS)
-    if isinstance(drive, PrescribedDriveParameters):
-        x, y, s, slope_before, slope_after = np.array(drive.make_midline_nodes(), dtype=np.float64).T
+    check_limits(drive_parameters, drive_parameters.find_table_parameter_limits())
+    if isinstance(drive_parameters, ContactPairDriveParameters):
+        return refine_curve(lambda steps: _tabulate_midline(drive_parameters, steps), MIN_MIDLINE_TABLE_STEPS)
+    if isinstance(drive_parameters, PrescribedDriveParameters):
+        x, y, s, slope_before, slope_after = np.array(
+            drive_parameters.make_midline_nodes(), dtype=np.float64
+        ).T
         return Curve(x, y, s, slope_after[:-1], slope_before[1:])
     expected = "ContactPairDriveParameters nor PrescribedDriveParameters"
-    raise TypeError(f"{type(drive).__name__} is neither {expected}")
+    raise TypeError(f"{type(drive_parameters).__name__} is neither {expected}")
 
 
-def _tabulate_midline(drive: ContactPairDriveParameters, step_count: int) -> Curve:
-    """Tabulate the midline, torque over wind-up, with a number of steps; see `torque_curve`."""
-    smoothing = drive.torque_smoothing
-    xi = np.linspace(0.0, np.arcsinh(drive.max_torque / smoothing), step_count + 1)
+def _tabulate_midline(drive_parameters: ContactPairDriveParameters, step_count: int) -> Curve:
+    """Tabulate the midline, torque as a function of wind-up, with a number of steps up to max_torque."""
+    smoothing = drive_parameters.torque_smoothing
+    xi = np.linspace(0.0, np.arcsinh(drive_parameters.max_torque / smoothing), step_count + 1)
     T, half = smoothing * np.sinh(xi), 0.5 * xi[1]
     with np.errstate(all="ignore"):
-        K, growth = stiffness_with_play(drive, T)
-    if not np.all((K > MIN_STIFFNESS) & (K < (1.0 - MIN_STIFFNESS_MARGIN) * drive.K_FTS0)):
+        K, growth = stiffness_with_play(drive_parameters, T)
+    if not np.all(
+        (K > MIN_DRIVE_STIFFNESS)
+        & (K < (1.0 - MIN_FLEXSPLINE_OVER_CONTACT_STIFFNESS) * drive_parameters.K_FTS0)
+    ):
         raise ValueError(
-            f"K_FTS0 = {drive.K_FTS0:g} N.m/rad and the contact pair give K_WTS = {K[-1]:g} N.m/rad, allowed "
-            f"is ({MIN_STIFFNESS:g}, {drive.K_FTS0:g}) N.m/rad with K_TS at most "
-            f"{1.0 / MIN_STIFFNESS_MARGIN:g} times K_FTS0"
+            f"K_WTS = {K[-1]:g} N.m/rad of the contact pair (K_TS) in series with "
+            f"K_FTS0 = {drive_parameters.K_FTS0:g} N.m/rad is outside ({MIN_DRIVE_STIFFNESS:g}, "
+            f"{drive_parameters.K_FTS0:g}) N.m/rad, or K_TS is above "
+            f"{1.0 / MIN_FLEXSPLINE_OVER_CONTACT_STIFFNESS:g} K_FTS0; check K_FTS0 and the contact pair"
         )
-    inner = xi[:-1, None] + half * (1.0 + GAUSS_RULE[0])
-    rate = smoothing * np.cosh(inner) / stiffness_with_play(drive, smoothing * np.sinh(inner))[0]
-    phi = np.concatenate([[0.0], np.cumsum(half * rate @ GAUSS_RULE[1])])
+    inner = xi[:-1, None] + half * (1.0 + GAUSS_NODES_AND_WEIGHTS[0])
+    rate = smoothing * np.cosh(inner) / stiffness_with_play(drive_parameters, smoothing * np.sinh(inner))[0]
+    phi = np.concatenate([[0.0], np.cumsum(half * rate @ GAUSS_NODES_AND_WEIGHTS[1])])
     return assemble_curve([(phi, T, K, K * growth)])
 
 
@@ -75,9 +82,9 @@ class HarmonicDriveSpring:
     """Tabulated harmonic drive: motion in, torque out; or torque in, motion out.
 
     joint      : parameter set
-    curve      : midline, torque [N.m] over wind-up [rad] >= 0
-    hysteresis : friction torque added to the midline
-    friction   : friction at the wave generator
+    curve      : midline, torque [N.m] as a function of wind-up [rad] >= 0, without hysteresis
+    hysteresis : spring-slider elements whose friction torque is added to the midline
+    friction   : spring-slider elements of the dry friction at the wave generator
     """
 
     joint: DriveParameters
@@ -86,13 +93,18 @@ class HarmonicDriveSpring:
     friction: FrictionSliders
 
     @classmethod
-    def tabulate(cls, drive: DriveParameters) -> "HarmonicDriveSpring":
-        """Tabulate the midline for a parameter set, and find the sliders of hysteresis and friction.
+    def tabulate(cls, drive_parameters: DriveParameters) -> "HarmonicDriveSpring":
+        """Tabulate the midline of a parameter set, and find the sliders of hysteresis and dry friction.
 
-        Raises ValueError as `torque_curve` and `HysteresisSliders.for_drive` do.
+        Raises ValueError as `torque_curve` and `HysteresisSliders.from_drive` do.
         """
-        curve = torque_curve(drive)
-        return cls(drive, curve, HysteresisSliders.for_drive(drive, curve), FrictionSliders.for_drive(drive))
+        curve = torque_curve(drive_parameters)
+        return cls(
+            drive_parameters,
+            curve,
+            HysteresisSliders.from_drive(drive_parameters, curve),
+            FrictionSliders.from_drive(drive_parameters),
+        )
 
     def evaluate_motion(
         self,
@@ -102,59 +114,68 @@ class HarmonicDriveSpring:
         w2: ArrayLike,
         temperature: ArrayLike = REFERENCE_TEMPERATURE,
     ) -> dict[str, Array]:
-        """Outputs after a straight path from the virgin state to a motion and temperatures (...) [K].
+        """Evaluate all outputs after a straight path from the virgin state to a motion of the flanges.
+
+        temperature        : (...) [K] of the lubricant
 
         phi1, w1, phi2, w2 : (...) [rad], [rad/s] angles and speeds of the flanges
         """
         return self.advance_motion((phi1, w1, phi2, w2), self.initial_history(), temperature)[0]
 
     def evaluate_torque(self, tau: ArrayLike) -> dict[str, Array]:
-        """Outputs after a path from the virgin state to torques (...) [N.m], wave generator locked."""
+        """Evaluate outputs on a path from the virgin state to torques [N.m], with locked wave generator."""
         return self.advance_torque(tau, self.initial_history())[0]
 
     def initial_history(self) -> Array:
-        """History variables (n) of the virgin state."""
+        """History variables (n) of hysteresis and dry friction in the virgin state: all zero."""
         return HISTORY_LAYOUT.virgin_history()
 
     def advance_motion(
-        self, motion: Sequence[ArrayLike], history: Array, temperature: ArrayLike = REFERENCE_TEMPERATURE
+        self,
+        flange_motion: Sequence[ArrayLike],
+        history_variables: Array,
+        temperature: ArrayLike = REFERENCE_TEMPERATURE,
     ) -> tuple[dict[str, Array], Array]:
-        """Compute outputs and new history variables after a straight path to a motion.
+        """Compute outputs and new history variables after a straight path to a motion of the flanges.
 
-        motion      : phi1, w1, phi2, w2 (...) [rad, rad/s]
-        history     : (n) history variables at the start of the path
-        temperature : (...) [K] of the lubricant
+        flange_motion : (...) angles and speeds phi1, w1, phi2, w2 [rad, rad/s] at the end of the path
+        history_variables : (n) history variables at the start of the path
+        temperature   : (...) [K] of the lubricant
         """
-        motion = tuple(np.asarray(x, dtype=np.float64) for x in motion)
+        flange_motion = tuple(np.asarray(x, dtype=np.float64) for x in flange_motion)
         kelvin = np.asarray(temperature, dtype=np.float64)
-        hysteresis_history, friction_history = _split_history(history)
-        error, slope, _ = kinematic_error(self.joint, motion[0])
-        phi = wind_up(self.joint, motion, error)
+        hysteresis_history, friction_history = _split_history(history_variables)
+        error, slope, _ = kinematic_error(self.joint, flange_motion[0])
+        phi = wind_up(self.joint, flange_motion, error)
         load, stiffness = self.curve.derivatives(np.abs(phi), 1)
         hysteresis_update = self.hysteresis.advance(hysteresis_history, phi)
         load = np.copysign(load, phi)
         state = SpringState(phi, load, stiffness, hysteresis_update.traction, error, slope)
         tau, ripple = (
-            transmitted_torque(self.joint, motion, state),
-            friction_ripple(self.joint, motion[0])[0],
+            transmitted_torque(self.joint, flange_motion, state),
+            friction_ripple(self.joint, flange_motion[0])[0],
         )
-        friction_limits_ = friction_limits(self.joint, motion[1], tau, kelvin, ripple)
-        friction_update = self.friction.advance(friction_history, motion[0], motion[1], friction_limits_)
+        friction_limits_ = friction_limits(self.joint, flange_motion[1], tau, kelvin, ripple)
+        friction_update = self.friction.advance(
+            friction_history, flange_motion[0], flange_motion[1], friction_limits_
+        )
         loss = (
             hysteresis.HISTORY_LAYOUT.split(hysteresis_history)["loss"]
             + hysteresis_update.dissipated_energy
             + friction_update.dissipated_energy
         )
-        out = motion_outputs(self.joint, motion, kelvin, state, friction_update.traction) | {"E_loss": loss}
-        new_friction = self.friction.pack_history(friction_update, motion[0], friction_limits_)
+        out = motion_outputs(self.joint, flange_motion, kelvin, state, friction_update.traction) | {
+            "E_loss": loss
+        }
+        new_friction = self.friction.pack_history(friction_update, flange_motion[0], friction_limits_)
         return out, np.concatenate(
             [self.hysteresis.pack_history(hysteresis_update, phi, loss), new_friction], axis=-1
         )
 
-    def advance_torque(self, tau: ArrayLike, history: Array) -> tuple[dict[str, Array], Array]:
+    def advance_torque(self, tau: ArrayLike, history_variables: Array) -> tuple[dict[str, Array], Array]:
         """Compute outputs and new history variables after a path to torques [N.m], wave generator locked."""
-        hysteresis_history, friction_history = _split_history(history)
-        if self.hysteresis.is_active:
+        hysteresis_history, friction_history = _split_history(history_variables)
+        if self.hysteresis.has_friction:
             phi = self.hysteresis.solve_wind_up(self.curve, hysteresis_history, tau)
         else:
             phi = self.curve.odd_inverse(tau)
@@ -167,9 +188,11 @@ class HarmonicDriveSpring:
         return out, np.concatenate([new, locked], axis=-1)
 
 
-def _split_history(history: Array) -> tuple[Array, Array]:
+def _split_history(history_variables: Array) -> tuple[Array, Array]:
     """Split history variables (..., n) into history variables of hysteresis and of friction."""
-    return history[..., : hysteresis.HISTORY_LAYOUT.size], history[..., hysteresis.HISTORY_LAYOUT.size :]
+    return history_variables[..., : hysteresis.HISTORY_LAYOUT.value_count], history_variables[
+        ..., hysteresis.HISTORY_LAYOUT.value_count :
+    ]
 
 
 @dataclass(frozen=True, slots=True)
@@ -194,35 +217,42 @@ class SpringState:
     phi_error_slope: Number
 
 
-def wind_up(drive: DriveParameters, motion: Sequence[Number], phi_error: Number) -> Number:
-    """Wind-up phi_rel [rad] at the output, for (phi1, w1, phi2, w2) and the kinematic error [rad]."""
-    phi1, _, phi2, _ = motion
-    return phi2 - phi1 / drive.ratio - phi_error
+def wind_up(drive_parameters: DriveParameters, flange_motion: Sequence[Number], phi_error: Number) -> Number:
+    """Wind-up [rad] at the output: phi2 - phi1/ratio - kinematic error.
+
+    flange_motion : angles and speeds phi1, w1, phi2, w2 of wave generator (1) and output (2)
+    phi_error     : [rad] kinematic error
+    """
+    phi1, _, phi2, _ = flange_motion
+    return phi2 - phi1 / drive_parameters.ratio - phi_error
 
 
 def motion_outputs(
-    drive: DriveParameters,
-    motion: Sequence[Number],
+    drive_parameters: DriveParameters,
+    flange_motion: Sequence[Number],
     temperature: Number,
     spring_state: SpringState,
     dry_friction_torque: Number,
 ) -> dict[str, Number]:
-    """Outputs of the spring except E_loss, at a motion (phi1, w1, phi2, w2).
+    """Outputs of the drive at a motion of the flanges, except the dissipated energy E_loss.
 
+    flange_motion       : angles and speeds phi1, w1, phi2, w2 of wave generator (1) and output (2)
     temperature         : [K] of the lubricant
     spring_state        : state of the spring at this motion
     dry_friction_torque : [N.m] at the wave generator
     """
-    tau = transmitted_torque(drive, motion, spring_state)
-    friction = dry_friction_torque + viscous_torque(drive, motion[1], temperature)
-    w = mobility(drive.inertia1, 1.0 / drive.ratio) + mobility(drive.inertia2)
-    at_once, side_by_side = largest_stable_steps(spring_state.midline_stiffness, drive.d, w)
+    tau = transmitted_torque(drive_parameters, flange_motion, spring_state)
+    friction = dry_friction_torque + viscous_torque(drive_parameters, flange_motion[1], temperature)
+    w = mobility(drive_parameters.inertia1, 1.0 / drive_parameters.ratio) + mobility(
+        drive_parameters.inertia2
+    )
+    at_once, side_by_side = largest_stable_steps(spring_state.midline_stiffness, drive_parameters.d, w)
     return {
-        "tau1": tau / drive.ratio + spring_state.phi_error_slope * tau - friction,
+        "tau1": tau / drive_parameters.ratio + spring_state.phi_error_slope * tau - friction,
         "tau2": -tau,
         "phi_rel": spring_state.phi_rel,
         "tau": tau,
-        **stiffness_outputs(drive, spring_state.midline_torque, spring_state.midline_stiffness),
+        **stiffness_outputs(drive_parameters, spring_state.midline_torque, spring_state.midline_stiffness),
         "tau_friction": friction,
         "phi_error": spring_state.phi_error,
         "step_at_once": at_once,
@@ -230,28 +260,31 @@ def motion_outputs(
     }
 
 
-def transmitted_torque(drive: DriveParameters, motion: Sequence[Number], spring_state: SpringState) -> Number:
+def transmitted_torque(
+    drive_parameters: DriveParameters, flange_motion: Sequence[Number], spring_state: SpringState
+) -> Number:
     """Torque tau [N.m] at the output: sum of midline, hysteresis and damping."""
-    _, w1, _, w2 = motion
+    _, w1, _, w2 = flange_motion
     return (
         spring_state.midline_torque
         + spring_state.hysteresis_torque
-        + drive.d * (w2 - w1 / drive.ratio - spring_state.phi_error_slope * w1)
+        + drive_parameters.d * (w2 - w1 / drive_parameters.ratio - spring_state.phi_error_slope * w1)
     )
 
 
 def stiffness_outputs(
-    drive: DriveParameters, midline_torque: Number, midline_stiffness: Number
+    drive_parameters: DriveParameters, midline_torque: Number, midline_stiffness: Number
 ) -> dict[str, Number]:
-    """Outputs K_WTS, K_TS, K_FTS, K_TS_pair [N.m/rad] and p_max [Pa] at a torque [N.m] of the midline.
+    """Stiffness outputs [N.m/rad] and peak contact pressure p_max [Pa] at a torque [N.m] of the midline.
 
-    K_TS includes the lost motion; K_TS_pair is K_TS on the scale of Fig. 11 of Hu 2023.
+    K_WTS: drive; K_FTS: circular spline and flexspline; K_TS: contact pair and lost motion, in series with
+    K_FTS; K_TS_pair: K_TS on the scale of Fig. 11 of Hu 2023.
     """
-    K_TS = midline_stiffness * drive.K_FTS / (drive.K_FTS - midline_stiffness)
+    K_TS = midline_stiffness * drive_parameters.K_FTS / (drive_parameters.K_FTS - midline_stiffness)
     return {
         "K_WTS": midline_stiffness,
         "K_TS": K_TS,
-        "K_FTS": drive.K_FTS + 0.0 * midline_stiffness,
-        "K_TS_pair": K_TS / drive.pair_stiffness_scale,
-        "p_max": drive.pressure(midline_torque),
+        "K_FTS": drive_parameters.K_FTS + 0.0 * midline_stiffness,
+        "K_TS_pair": K_TS / drive_parameters.contact_pair_stiffness_scale,
+        "p_max": drive_parameters.pressure(midline_torque),
     }

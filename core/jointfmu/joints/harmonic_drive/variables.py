@@ -1,14 +1,14 @@
 """Models of the harmonic drive that are exported as FMUs, with their inputs and outputs."""
 
 from ...mechanics.stable_steps import STABLE_STEP_OUTPUTS
-from ...quantity.units import LUBRICANT_TEMPERATURES
+from ...quantity.units import LUBRICANT_TEMPERATURE_RANGE
 from ..model import EXTRAPOLATION_WARNING, LoadCycle, LoadRamp, Model, ValidityLimit, Variable, VariableValues
 from .drive import FRICTION_HARMONICS, KINEMATIC_ERROR_HARMONICS
 from .friction import REFERENCE_TEMPERATURE
 from .law import HarmonicDriveParameters
 from .spring import HarmonicDriveSpring
 
-_COMMON_OUTPUTS = (
+_OUTPUTS_OF_BOTH_MODELS = (
     Variable("K_WTS", "N.m/rad", "tangent stiffness dT/dphi of the midline at the present wind-up", 5e3),
     Variable("K_TS", "N.m/rad", "stiffness of the contact pair: 1/K_WTS = 1/K_FTS + 1/K_TS", 5e3),
     Variable("K_FTS", "N.m/rad", "stiffness of circular spline and flexspline", 2e4),
@@ -27,9 +27,9 @@ _ANGLE_INPUTS = ("phi1", "phi2")
 """Names of the inputs with the angles of the flanges."""
 _FLANGE_MOTION_INPUTS = ("phi1", "w1", "phi2", "w2")
 """Names of the inputs with the angles and speeds of the flanges."""
-_FIXED_PARAMETERS = ("max_torque", "shear_traction", "table")
+_UNEXPOSED_PARAMETER_NAMES = ("max_torque", "shear_traction", "table")
 """Names of parameters that the FMUs do not expose."""
-_LOAD_CYCLE_SETTINGS = {"hysteresis_loss": 3e-4, "hysteresis_stiffness": 8e3}
+_LOAD_CYCLE_PARAMETER_VALUES = {"hysteresis_loss": 3e-4, "hysteresis_stiffness": 8e3}
 """Parameters of the load cycle: hysteresis of one arcmin; the default drive has no hysteresis."""
 _LINEAR_SPEED_FACTORS = {"w2": "parameters"}
 """Inputs on which torques depend linearly, with a factor of the parameters alone, see `Model`."""
@@ -64,9 +64,9 @@ _SPRING_PARAMETERS = (
 """Names of the parameters that only the model with motion as input has."""
 
 
-def _flange_motion(inputs: VariableValues) -> tuple[float, ...]:
-    """Motion of both flanges: phi1, w1, phi2, w2."""
-    return tuple(inputs[name] for name in _FLANGE_MOTION_INPUTS)
+def _flange_motion(input_values: VariableValues) -> tuple[float, ...]:
+    """Angles and speeds phi1, w1, phi2, w2 of wave generator (1) and output (2), from {input: value}."""
+    return tuple(input_values[name] for name in _FLANGE_MOTION_INPUTS)
 
 
 MODELS = (
@@ -102,7 +102,7 @@ MODELS = (
                 "output torque: midline T(phi_rel) + hysteresis friction T_h + d der(phi_rel)",
                 5.0,
             ),
-            *_COMMON_OUTPUTS,
+            *_OUTPUTS_OF_BOTH_MODELS,
             Variable(
                 "tau_friction",
                 "N.m",
@@ -122,14 +122,14 @@ MODELS = (
             ValidityLimit("phi_rel", lambda j, end, v: (-end[0], end[0]), EXTRAPOLATION_WARNING),
             ValidityLimit(
                 "temperature",
-                lambda j, end, v: LUBRICANT_TEMPERATURES,
+                lambda j, end, v: LUBRICANT_TEMPERATURE_RANGE,
                 "outside the range of lubricants; the unit is kelvin",
             ),
         ),
         ramp=LoadRamp(
-            "phi2", 1.5e-3, 3e-6, find_range=lambda s, v: (0.0, s.curve.inverse(s.joint.ramp_torque))
+            "phi2", 1.5e-3, 3e-6, find_load_range=lambda s, v: (0.0, s.curve.inverse(s.joint.ramp_torque))
         ),
-        load_cycle=LoadCycle("phi2", 1e-3, _LOAD_CYCLE_SETTINGS),
+        load_cycle=LoadCycle("phi2", 1e-3, _LOAD_CYCLE_PARAMETER_VALUES),
         dependencies={
             "tau2": _FLANGE_MOTION_INPUTS,
             "phi_rel": _ANGLE_INPUTS,
@@ -147,7 +147,7 @@ MODELS = (
             "tau2": _LINEAR_SPEED_FACTORS,
             "tau": _LINEAR_SPEED_FACTORS,
         },
-        fixed_parameters=_FIXED_PARAMETERS,
+        fixed_parameters=_UNEXPOSED_PARAMETER_NAMES,
     ),
     Model(
         name="HarmonicDriveCompliance",
@@ -158,15 +158,15 @@ MODELS = (
         inputs=(Variable("tau", "N.m", "torque at the output flange", 5.0),),
         outputs=(
             Variable("phi_rel", "rad", "wind-up at the output, phi(tau - T_h)", 1e-3),
-            *_COMMON_OUTPUTS,
+            *_OUTPUTS_OF_BOTH_MODELS,
         ),
         evaluate=lambda s, v: s.evaluate_torque(v["tau"]),
         initial_history=lambda s: s.initial_history(),
         advance=lambda s, v, memory: s.advance_torque(v["tau"], memory),
         validity_limits=(ValidityLimit("tau", lambda j, end, v: (-end[1], end[1]), EXTRAPOLATION_WARNING),),
-        ramp=LoadRamp("tau", 5.0, 0.01, find_range=lambda s, v: (0.0, s.joint.ramp_torque)),
-        load_cycle=LoadCycle("tau", 5.0, _LOAD_CYCLE_SETTINGS),
+        ramp=LoadRamp("tau", 5.0, 0.01, find_load_range=lambda s, v: (0.0, s.joint.ramp_torque)),
+        load_cycle=LoadCycle("tau", 5.0, _LOAD_CYCLE_PARAMETER_VALUES),
         dependencies={"K_FTS": ()},
-        fixed_parameters=(*_FIXED_PARAMETERS, *_SPRING_PARAMETERS),
+        fixed_parameters=(*_UNEXPOSED_PARAMETER_NAMES, *_SPRING_PARAMETERS),
     ),
 )

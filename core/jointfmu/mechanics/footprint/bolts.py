@@ -29,8 +29,8 @@ class BoltedFrame:
     column_spacing: float = quantity_field("m", "distance between the outer bolts of a row", gt=0.0)
     flange_width: float = quantity_field("m", "width of the contact frame", gt=0.0)
     hole_diameter: float = quantity_field("m", "clearance hole of a bolt", gt=0.0)
-    decay_length: float = quantity_field("m", "length of the pressure decay", gt=0.0, calibration=True)
-    decay_exponent: float = quantity_field("1", "exponent of the pressure decay", gt=0.0, calibration=True)
+    decay_length: float = quantity_field("m", "length of the pressure decay", gt=0.0, is_calibrated=True)
+    decay_exponent: float = quantity_field("1", "exponent of the pressure decay", gt=0.0, is_calibrated=True)
 
     def __post_init__(self) -> None:
         check_fields(self)
@@ -41,7 +41,7 @@ class BoltedFrame:
             )
 
     @property
-    def bolts_from_middle(self) -> Array:
+    def bolt_positions_from_middle(self) -> Array:
         """Bolt positions (8, 2) [m] from the middle of the frame, in descending order of y."""
         x, y = 0.5 * self.column_spacing, 0.5 * self.row_spacing
         return np.array([[-x, y], [0, y], [x, y], [-x, 0], [x, 0], [-x, -y], [0, -y], [x, -y]])
@@ -50,7 +50,7 @@ class BoltedFrame:
     def area(self) -> float:
         """Area [m2] of the contact: the frame without its holes."""
         frame = 2.0 * self.flange_width * (self.column_spacing + self.row_spacing)
-        return frame - 0.25 * np.pi * len(self.bolts_from_middle) * self.hole_diameter**2
+        return frame - 0.25 * np.pi * len(self.bolt_positions_from_middle) * self.hole_diameter**2
 
     @property
     def equivalent_bolt_rows(self) -> tuple[float, float]:
@@ -65,14 +65,14 @@ class BoltedFrame:
     @property
     def bolt_positions(self) -> Array:
         """Positions (8, 2) [m] of the bolts, from the centroid of the contact."""
-        return self.bolts_from_middle
+        return self.bolt_positions_from_middle
 
-    def pressure_decay(self, distance: Array) -> Array:
+    def pressure_decay(self, axis_distance: Array) -> Array:
         """Pressure of one bolt over its value at the axis [1]: (1 + (r/decay_length)^2)^-decay_exponent.
 
-        distance : r (...) [m] from the axis
+        axis_distance : r (...) [m] from the axis
         """
-        return np.asarray((1.0 + (distance / self.decay_length) ** 2) ** -self.decay_exponent)
+        return np.asarray((1.0 + (axis_distance / self.decay_length) ** 2) ** -self.decay_exponent)
 
     def pressure_distribution(self) -> PressureDistribution:
         """Pressure distribution at the centroids of square area cells of the frame."""
@@ -96,7 +96,7 @@ def frame_cells(frame_geometry: BoltedFrame) -> tuple[Array, Array]:
     sub = [(np.arange(n * _CELL_SUBDIVISIONS) + 0.5) / (n * _CELL_SUBDIVISIONS) for n in count]
     x, y = np.meshgrid(*(o * (2.0 * s - 1.0) for o, s in zip(outer, sub, strict=True)), indexing="ij")
     solid = (np.abs(x) > inner[0] * EDGE_TOLERANCE_FACTOR) | (np.abs(y) > inner[1] * EDGE_TOLERANCE_FACTOR)
-    for bx, by in frame_geometry.bolts_from_middle:
+    for bx, by in frame_geometry.bolt_positions_from_middle:
         solid &= np.hypot(x - bx, y - by) > 0.5 * frame_geometry.hole_diameter * EDGE_TOLERANCE_FACTOR
     area = 4.0 * outer[0] * outer[1] / solid.size
 
@@ -114,21 +114,23 @@ def frame_cells(frame_geometry: BoltedFrame) -> tuple[Array, Array]:
 
 
 def bolt_pressures(
-    frame_geometry: BoltedFrame, areas: Array, cell_points: Array, evaluation_points: Array
+    frame_geometry: BoltedFrame, cell_areas: Array, cell_points: Array, evaluation_points: Array
 ) -> Array:
     """Contact pressure (8, k) [Pa] of a bolted frame by 1 N in each of its eight bolts.
 
-    areas, cell_points : (n) [m2], (n, 2) [m] of the cells; the pressure of each bolt sums to 1 N over them
-    evaluation_points  : (k, 2) [m] at which the pressure is computed
+    cell_areas, cell_points : (n) [m2], (n, 2) [m] of the cells; the pressure of each bolt sums to 1 N over
+                              them
+    evaluation_points       : (k, 2) [m] at which the pressure is computed
     """
 
-    def unscaled_pressure(positions: Array) -> Array:
+    def unscaled_pressure(pressure_positions: Array) -> Array:
         """Pressure of each bolt at positions, before it is scaled to a force of 1 N."""
-        offset = positions[None, :, :] - frame_geometry.bolts_from_middle[:, None, :]
+        offset = pressure_positions[None, :, :] - frame_geometry.bolt_positions_from_middle[:, None, :]
         return frame_geometry.pressure_decay(np.hypot(offset[..., 0], offset[..., 1]))
 
     return np.asarray(
-        unscaled_pressure(evaluation_points) / np.sum(areas * unscaled_pressure(cell_points), axis=1)[:, None]
+        unscaled_pressure(evaluation_points)
+        / np.sum(cell_areas * unscaled_pressure(cell_points), axis=1)[:, None]
     )
 
 

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from ...quantity import Array, check_fields, quantity_field, series_field
 
-NODAL_FIELD_BALANCE_TOLERANCE = 1e-6
+NODAL_FIELD_SUM_TOLERANCE = 1e-6
 """Largest error of the sums and means that a nodal pressure field of a file must have [1]."""
-PRESSURE_DECIMALS = 11
+PRESSURE_COMPARISON_DECIMALS = 11
 """Decimals to which pressures of nodes are compared [1]: symmetric nodes then agree."""
 
 
@@ -33,14 +33,17 @@ class PressureDistribution:
 
     @property
     def rows(self) -> list[Array]:
-        """Arrays (n) of all numbers of the nodes: share, x, y, both pressure ratios, radius of patches."""
+        """Arrays (n) of all numbers of the nodes: share, x, y, both pressure ratios, slider circle radius."""
         share, position, *others = (getattr(self, item.name) for item in fields(self))
         return [share, *position.T, *others]
 
     @classmethod
-    def from_rows(cls, rows: Sequence[Array] | Array) -> Self:
-        """Make a pressure distribution from arrays in the order of `rows`."""
-        share, x, y, *others = rows
+    def from_rows(cls, node_rows: Sequence[Array] | Array) -> Self:
+        """Make a pressure distribution from arrays (n) of all numbers of its nodes, in the order of `rows`.
+
+        The order is share, x, y, pressure ratios of preload and of moment; for patches also the radius.
+        """
+        share, x, y, *others = node_rows
         return cls(share, np.column_stack([x, y]), *others)
 
     def select_nodes(self, node_indices: "slice | NDArray[np.intp]") -> "PressureDistribution":
@@ -52,8 +55,8 @@ class PressureDistribution:
             self.moment_pressure_ratio[node_indices],
         )
 
-    def as_patches(self) -> "FrictionPatches":
-        """Friction patches, one per node, with the radius 0."""
+    def make_friction_patches(self) -> "FrictionPatches":
+        """Friction patches, one per node, with slider circles of radius 0."""
         return FrictionPatches(
             self.area_share,
             self.position,
@@ -65,10 +68,11 @@ class PressureDistribution:
     def merge_nodes(self, keeps_moment_pressure: bool = True) -> "MergedDistribution":
         """Merge nodes that have the same pressure at every preload and moment.
 
-        keeps_moment_pressure : False: without moment; merge all nodes with the same pressure at every preload
+        keeps_moment_pressure : False: ignore the pressure by moments, and merge all nodes with the same
+            pressure at every preload
         """
         tilt = self.moment_pressure_ratio if keeps_moment_pressure else 0.0 * self.moment_pressure_ratio
-        keys = np.round(np.column_stack([self.preload_pressure_ratio, tilt]), PRESSURE_DECIMALS)
+        keys = np.round(np.column_stack([self.preload_pressure_ratio, tilt]), PRESSURE_COMPARISON_DECIMALS)
         _, first, group = np.unique(keys, axis=0, return_index=True, return_inverse=True)
         share = np.asarray(np.bincount(group.ravel(), self.area_share), dtype=np.float64)
         x2, y2 = (np.bincount(group.ravel(), self.area_share * x**2) / share for x in self.position.T)
@@ -79,11 +83,11 @@ class PressureDistribution:
 class FrictionPatches(PressureDistribution):
     """Patches that represent the friction of a contact, each for the nodes around it.
 
-    radius : (n) [m] radius of the circle around the centre of a patch on which its sliders lie; negative: the
-        circle is turned by 180 degrees
+    slider_circle_radius : (n) [m] radius of the circle around the centre of a patch on which its sliders lie;
+        negative: the circle is turned by 180 degrees
     """
 
-    radius: Array
+    slider_circle_radius: Array
 
 
 def moment_pressure(area_share: Array, y: Array, preload_pressure_ratio: Array) -> Array:
@@ -101,7 +105,7 @@ def moment_pressure(area_share: Array, y: Array, preload_pressure_ratio: Array) 
     second_moment = float(force @ distances**2)
     if not second_moment > 0.0:
         raise ValueError(
-            "all nodes in contact have the same y, expected a contact that extends across the bolt rows"
+            "all nodes in contact have the same y; expected a contact that extends across the bolt rows"
         )
     return np.asarray(preload_pressure_ratio * distances / second_moment)
 
@@ -111,9 +115,9 @@ BOLT_POSITION_MEAN_NAMES = ("bolt_x", "bolt_y", "bolt_x2", "bolt_y2", "bolt_xy")
 PositionMeans: TypeAlias = tuple[float, float, float, float, float]
 
 
-def position_means(points: Array) -> PositionMeans:
+def position_means(positions: Array) -> PositionMeans:
     """Means of x, y [m], x^2, y^2 and x y [m2] of points (n, 2) [m]."""
-    x, y = points.T
+    x, y = positions.T
     first, second, xx, yy, xy = (float(np.mean(values)) for values in (x, y, x * x, y * y, x * y))
     return first, second, xx, yy, xy
 
@@ -133,7 +137,7 @@ class MergedDistribution:
     mean_square_y: Array
 
 
-_POINT_ENTRIES = ("share", "x", "y", "equal", "tilt")
+_CONTACT_POINT_ENTRY_NAMES = ("share", "x", "y", "equal", "tilt")
 """Keys of the section [field] of a parameter file for the contact points."""
 PATCH_KEY_PREFIX = "patch_"
 """Prefix of the keys of the section [field] of a parameter file for the friction patches."""
@@ -145,7 +149,7 @@ def encode_nodal_field(pressure_distribution: PressureDistribution) -> dict[str,
     """Encode points or friction patches as entries {name: values} of [field] in a parameter file."""
     rows = dict(
         zip(
-            _POINT_ENTRIES,
+            _CONTACT_POINT_ENTRY_NAMES,
             (
                 pressure_distribution.area_share,
                 *pressure_distribution.position.T,
@@ -158,7 +162,7 @@ def encode_nodal_field(pressure_distribution: PressureDistribution) -> dict[str,
     if isinstance(pressure_distribution, FrictionPatches):
         rows = {
             PATCH_KEY_PREFIX + name: row
-            for name, row in (rows | {"radius": pressure_distribution.radius}).items()
+            for name, row in (rows | {"radius": pressure_distribution.slider_circle_radius}).items()
         }
     return {name: tuple(row.tolist()) for name, row in rows.items()}
 
@@ -170,8 +174,9 @@ class NodalField:
     Optional friction patches represent the friction.
 
     Raises ValueError if the entries of the points, or of the patches, have different lengths or do not
-    balance. Balanced within NODAL_FIELD_BALANCE_TOLERANCE: the sum of shares is 1, the centroid is the
-    origin, the mean of `equal` is 1, the mean of `tilt` is 0.
+    balance. Balanced within NODAL_FIELD_SUM_TOLERANCE: the sum of shares is 1, the centroid is the
+    origin, the mean of `equal` (pressure ratio under equal bolt forces) is 1, and the mean of `tilt`
+    (pressure ratio under a moment) is 0.
     """
 
     share: tuple[float, ...] = series_field(
@@ -186,27 +191,27 @@ class NodalField:
         "1", "pressures that a moment adds, over the mean pressure of one row's share of it"
     )
     patch_share: tuple[float, ...] = series_field(
-        "1", "shares of the friction patches in the nominal area, which sum to 1", gt=0.0, optional=True
+        "1", "shares of the friction patches in the nominal area, which sum to 1", gt=0.0, is_optional=True
     )
     patch_x: tuple[float, ...] = series_field(
-        "m", "positions of the friction patches along the bolt rows, from the centroid", optional=True
+        "m", "positions of the friction patches along the bolt rows, from the centroid", is_optional=True
     )
     patch_y: tuple[float, ...] = series_field(
-        "m", "positions of the friction patches across the bolt rows, from the centroid", optional=True
+        "m", "positions of the friction patches across the bolt rows, from the centroid", is_optional=True
     )
     patch_equal: tuple[float, ...] = series_field(
         "1",
         "pressures at the friction patches over mean pressure with equal bolt forces",
         ge=0.0,
-        optional=True,
+        is_optional=True,
     )
     patch_tilt: tuple[float, ...] = series_field(
-        "1", "pressures at the friction patches that a moment adds, as tilt", optional=True
+        "1", "pressures at the friction patches that a moment adds, as tilt", is_optional=True
     )
     patch_radius: tuple[float, ...] = series_field(
         "m",
         "radii of the circles on which the sliders of a patch lie; negative: circle turned by 180 degrees",
-        optional=True,
+        is_optional=True,
     )
     bolt_x: float = quantity_field(
         "m", "mean position of the bolts along the rows, from the centroid", default=0.0
@@ -224,10 +229,10 @@ class NodalField:
         "m2", "mean product of the bolts' positions along and across the rows, from the centroid", default=0.0
     )
     each_bolt_x: tuple[float, ...] = series_field(
-        "m", "position of each bolt along the rows, from the centroid", optional=True
+        "m", "position of each bolt along the rows, from the centroid", is_optional=True
     )
     each_bolt_y: tuple[float, ...] = series_field(
-        "m", "position of each bolt across the rows, from the centroid", optional=True
+        "m", "position of each bolt across the rows, from the centroid", is_optional=True
     )
 
     def __post_init__(self) -> None:
@@ -235,7 +240,7 @@ class NodalField:
         for prefix in ("", PATCH_KEY_PREFIX):
             self._check_points(prefix)
         if (count := len(self.patch_share)) > MAX_PATCHES:
-            raise ValueError(f"patch_share has {count} numbers, expected at most {MAX_PATCHES}")
+            raise ValueError(f"patch_share has {count} friction patches, expected at most {MAX_PATCHES}")
         if len(self.each_bolt_y) != (count := len(self.each_bolt_x)):
             raise ValueError(
                 f"each_bolt_y has {len(self.each_bolt_y)} numbers, expected {count}: one per each_bolt_x"
@@ -250,7 +255,11 @@ class NodalField:
         entry_prefix : prefix of the names of the lists: "" for the points, PATCH_KEY_PREFIX for the patches
         """
         count = len(getattr(self, f"{entry_prefix}share"))
-        for name in (*_POINT_ENTRIES, "radius") if entry_prefix and self.patch_radius else _POINT_ENTRIES:
+        for name in (
+            (*_CONTACT_POINT_ENTRY_NAMES, "radius")
+            if entry_prefix and self.patch_radius
+            else _CONTACT_POINT_ENTRY_NAMES
+        ):
             if (length := len(getattr(self, entry_prefix + name))) != count:
                 raise ValueError(
                     f"{entry_prefix}{name} has {length} numbers, expected as many as "
@@ -258,32 +267,32 @@ class NodalField:
                 )
         if not count:
             return
-        shape, owner = self._make_distribution(entry_prefix), "of the patches" if entry_prefix else ""
+        shape, owner = self._make_distribution(entry_prefix), "patches" if entry_prefix else "points"
         reach = float(np.max(np.abs(shape.position)))
         x, y = shape.area_share @ shape.position
         steep = max(float(np.max(np.abs(shape.moment_pressure_ratio))), 1.0)
         for text, value, expected, size in (
             (f"the sum of {entry_prefix}share", float(np.sum(shape.area_share)), 1.0, 1.0),
-            ("x of the centroid", float(x), 0.0, reach),
-            ("y of the centroid", float(y), 0.0, reach),
+            ("x [m] of the centroid", float(x), 0.0, reach),
+            ("y [m] of the centroid", float(y), 0.0, reach),
             (
-                f"the mean of {entry_prefix}equal",
+                f"the mean of {entry_prefix}equal over the area",
                 float(shape.area_share @ shape.preload_pressure_ratio),
                 1.0,
                 1.0,
             ),
             (
-                f"the mean of {entry_prefix}tilt",
+                f"the mean of {entry_prefix}tilt over the area",
                 float(shape.area_share @ shape.moment_pressure_ratio),
                 0.0,
                 steep,
             ),
         ):
-            if not abs(value - expected) <= NODAL_FIELD_BALANCE_TOLERANCE * size:
-                text = f"{text} {owner}".rstrip() if "centroid" in text else text
+            if not abs(value - expected) <= NODAL_FIELD_SUM_TOLERANCE * size:
+                text = f"{text} of the {owner}" if "centroid" in text else text
                 raise ValueError(
                     f"{text} is {value:.9g}, expected {expected:g} within "
-                    f"{NODAL_FIELD_BALANCE_TOLERANCE * size:.1g}"
+                    f"{NODAL_FIELD_SUM_TOLERANCE * size:.1g}"
                 )
 
     @property
@@ -304,10 +313,16 @@ class NodalField:
         """Friction patches; None if the field states none."""
         if not self.patch_share:
             return None
-        patches = self._make_distribution(PATCH_KEY_PREFIX).as_patches()
-        return replace(patches, radius=np.array(self.patch_radius)) if self.patch_radius else patches
+        patches = self._make_distribution(PATCH_KEY_PREFIX).make_friction_patches()
+        return (
+            replace(patches, slider_circle_radius=np.array(self.patch_radius))
+            if self.patch_radius
+            else patches
+        )
 
     def _make_distribution(self, entry_prefix: str) -> PressureDistribution:
         """Make the pressure distribution of the points (prefix "") or of the friction patches."""
-        share, x, y, equal, tilt = (np.array(getattr(self, entry_prefix + name)) for name in _POINT_ENTRIES)
+        share, x, y, equal, tilt = (
+            np.array(getattr(self, entry_prefix + name)) for name in _CONTACT_POINT_ENTRY_NAMES
+        )
         return PressureDistribution(share, np.column_stack([x, y]), equal, tilt)

@@ -14,15 +14,16 @@ from .reproducible import euclidean_norm, linear_combination, matrix_product, we
 
 NodeIndices = NDArray[np.intp]
 
-DEPENDENCE_TOLERANCE = 1e-11
+LINEAR_DEPENDENCE_TOLERANCE = 1e-11
 """Norm over the largest norm [1] below which the remainder of a vector counts as linearly dependent."""
-CORRECTION_TOLERANCE = 1e-7
+SUM_CORRECTION_DEPENDENCE_TOLERANCE = 1e-7
 """Norm over the largest norm [1] for linear dependence in the correction of sums; far above round-off."""
 
 
 def reduce_weights(node_values: Array, node_weights: Array) -> Array:
-    """Reduce to at most d nonzero weights (n) that have the same weighted sums of values (n, d).
+    """Reduce the weights (n) of nodes to at most d nonzero weights, with the same d weighted sums.
 
+    node_values  : (n, d) values that are summed
     node_weights : (n) >= 0
     """
     basis, orthonormal = select_independent(node_values, node_values.shape[1])
@@ -44,19 +45,24 @@ def reduce_weights(node_values: Array, node_weights: Array) -> Array:
 
 
 def select_independent(
-    vectors: Array, max_count: int, tolerance: float = DEPENDENCE_TOLERANCE
+    candidate_vectors: Array, max_vector_count: int, dependence_tolerance: float = LINEAR_DEPENDENCE_TOLERANCE
 ) -> tuple[NodeIndices, Array]:
-    """Select linearly independent vectors of (n, d) by pivoted Gram-Schmidt orthogonalisation, applied twice.
+    """Select linearly independent ones of n vectors (n, d) by pivoted Gram-Schmidt orthogonalisation.
 
-    max_count : largest number of vectors to select
-    tolerance : [1] norm of the remainder over the largest norm below which a vector is dependent
+    The orthogonalisation is applied twice.
+    max_vector_count : largest number of vectors to select
+    dependence_tolerance : [1] norm of the remainder over the largest norm below which a vector is dependent
 
     Returns their indices (r), in the order of the size of their remainder, and an orthonormal basis (r, d).
     """
-    remainder, basis, indices = vectors.copy(), np.empty((0, vectors.shape[1])), np.empty(0, np.intp)
+    remainder, basis, indices = (
+        candidate_vectors.copy(),
+        np.empty((0, candidate_vectors.shape[1])),
+        np.empty(0, np.intp),
+    )
     square = np.add.reduce(remainder * remainder, axis=1)
-    end = tolerance * tolerance * np.max(square)
-    while indices.size < max_count and np.max(square) > end:
+    end = dependence_tolerance * dependence_tolerance * np.max(square)
+    while indices.size < max_vector_count and np.max(square) > end:
         pivot = int(np.argmax(square))
         axis = remainder[pivot] / np.sqrt(square[pivot])
         axis -= linear_combination(weighted_sums(basis, axis), basis)
@@ -67,7 +73,7 @@ def select_independent(
     return indices, basis
 
 
-def solve_linear(positive_definite_matrix: Array, right_hand_side: Array) -> Array:
+def solve_linear_system(positive_definite_matrix: Array, right_hand_side: Array) -> Array:
     """Solve a linear system with a positive definite matrix (n, n) by Gaussian elimination.
 
     Returns the solution (n); the order of all operations is fixed.
@@ -80,15 +86,19 @@ def solve_linear(positive_definite_matrix: Array, right_hand_side: Array) -> Arr
     return out
 
 
-def weight_changes(node_weights: Array, function_values: Array, sum_changes: Array) -> Array:
+def find_smallest_weight_changes(
+    node_weights: Array, function_values: Array, required_sum_changes: Array
+) -> Array:
     """Smallest changes (n) of weights that give required changes (m) of weighted sums of functions (m, n).
 
     The sum of change^2/|weight| is minimal. Functions that depend linearly on others are ignored.
     """
     root = np.sqrt(np.abs(node_weights))
     rows = function_values * root
-    places, base = select_independent(rows, len(rows), CORRECTION_TOLERANCE)
-    factors = weighted_sums(_invert_triangle(matrix_product(rows[places], base)), sum_changes[places])
+    places, base = select_independent(rows, len(rows), SUM_CORRECTION_DEPENDENCE_TOLERANCE)
+    factors = weighted_sums(
+        _invert_triangle(matrix_product(rows[places], base)), required_sum_changes[places]
+    )
     return np.asarray(root * linear_combination(factors, base))
 
 
@@ -105,7 +115,9 @@ def _invert_triangle(lower_triangle: Array) -> Array:
 def _find_leaving_node(
     weight_change_rates: Array, basis_weights: Array, new_node_weight: float
 ) -> tuple[int | None, float]:
-    """Ratio test: index of the node that leaves the basis, and weight transferred from the new node.
+    """Ratio test of the simplex method: node that leaves the basis, and weight moved to it from a new node.
+
+    The node is returned as its index in the basis.
 
     weight_change_rates : change of the basis weights per unit of transferred weight [1]
     basis_weights       : weights of the basis nodes

@@ -7,13 +7,13 @@ import numpy as np
 from ...quantity import Array, check_fields, quantity_field, series_field
 from .distribution import PositionMeans, PressureDistribution, moment_pressure, position_means
 
-MIN_CELLS_PER_RADIUS = 5
+MIN_CELLS_PER_PRESSURE_RADIUS = 5
 """Smallest number of area cells [1] from the axis of a bolt to the radius R at which its pressure ends."""
 COARSE_CELL_COUNT = 8
 """Number of area cells [1] along the longer side of the plate where there is no pressure."""
 _HOLE_SUBDIVISIONS = 8
 """Number of parts of the side of an area cell [1], for the area that a hole removes from the cell."""
-_ONE_ROW_TOLERANCE = 1e-6
+_ONE_BOLT_ROW_TOLERANCE = 1e-6
 """Extent of the bolt positions along y over the width of the plate [1], below which they are one row."""
 EDGE_TOLERANCE_FACTOR = 1.0 + 1e-9
 """Factor on distances that are compared with an edge [1]: points on it then do not depend on round-off."""
@@ -61,7 +61,7 @@ class BoltedPlate:
         check_holes(self)
 
     @property
-    def bolts_from_middle(self) -> Array:
+    def bolt_positions_from_middle(self) -> Array:
         """Bolt positions (n, 2) [m] from the middle of the plate."""
         return np.column_stack([self.x, self.y])
 
@@ -88,7 +88,7 @@ class BoltedPlate:
     def centroid(self) -> Array:
         """Centroid (2) [m] of the contact, from the middle of the plate."""
         return np.asarray(
-            -0.25 * np.pi * self.hole_diameter**2 / self.area * self.bolts_from_middle.sum(axis=0)
+            -0.25 * np.pi * self.hole_diameter**2 / self.area * self.bolt_positions_from_middle.sum(axis=0)
         )
 
     @property
@@ -99,7 +99,7 @@ class BoltedPlate:
     @property
     def bolt_positions(self) -> Array:
         """Positions (n, 2) [m] of the bolts, from the centroid of the contact."""
-        return np.asarray(self.bolts_from_middle - self.centroid)
+        return np.asarray(self.bolt_positions_from_middle - self.centroid)
 
     @property
     def equivalent_bolt_rows(self) -> tuple[float, float]:
@@ -110,7 +110,7 @@ class BoltedPlate:
         """
         if has_one_bolt_row(self):
             return 1.0, _one_row_equivalent_distance(self, *bolt_pressures(self))
-        return equivalent_bolt_rows(self.bolts_from_middle[:, 1])
+        return equivalent_bolt_rows(self.bolt_positions_from_middle[:, 1])
 
     @property
     def coarse_cell_counts(self) -> Array:
@@ -118,15 +118,15 @@ class BoltedPlate:
         plan = np.array([self.length, self.width])
         return np.asarray(np.maximum(np.ceil(COARSE_CELL_COUNT * plan / np.max(plan)), 2.0))
 
-    def pressure_distribution(self, cells: tuple[Array, Array] | None = None) -> PressureDistribution:
-        """Pressure distribution at the centroids of area cells of the plate (`cells`: see `bolt_pressures`).
+    def pressure_distribution(self, area_cells: tuple[Array, Array] | None = None) -> PressureDistribution:
+        """Pressure distribution at the centroids of area cells of the plate; arguments: see `bolt_pressures`.
 
         A moment M about x changes the force of bolt i by M y_i/sum(y_j^2), y from the centre of the bolts
         (the plates stay plane); for two equal rows this is M/(L_a N_b). Bolts in one row cannot carry a
         moment by their forces: the pressure then changes linearly with the distance from their line.
         """
-        share, position, unit = bolt_pressures(self, cells)
-        equal, y = unit.mean(axis=0), self.bolts_from_middle[:, 1]
+        share, position, unit = bolt_pressures(self, area_cells)
+        equal, y = unit.mean(axis=0), self.bolt_positions_from_middle[:, 1]
         if has_one_bolt_row(self):
             distance = _one_row_equivalent_distance(self, share, position, unit)
             return PressureDistribution(
@@ -140,7 +140,7 @@ class BoltedPlate:
 
 def check_holes(plate: BoltedPlate) -> None:
     """Raise ValueError if a hole is not inside the plate or overlaps another hole."""
-    radius, bolts = 0.5 * plate.hole_diameter, plate.bolts_from_middle
+    radius, bolts = 0.5 * plate.hole_diameter, plate.bolt_positions_from_middle
     half = 0.5 * np.array([plate.length, plate.width])
     for i, bolt in enumerate(bolts):
         if np.any(np.abs(bolt) + radius >= half):
@@ -160,7 +160,7 @@ def check_holes(plate: BoltedPlate) -> None:
 
 def has_one_bolt_row(plate: BoltedPlate) -> bool:
     """Whether all bolts lie on one line along x, so that a moment about x cannot change their forces."""
-    return bool(np.ptp(plate.bolts_from_middle[:, 1]) <= _ONE_ROW_TOLERANCE * plate.width)
+    return bool(np.ptp(plate.bolt_positions_from_middle[:, 1]) <= _ONE_BOLT_ROW_TOLERANCE * plate.width)
 
 
 def equivalent_bolt_rows(bolt_y: Array) -> tuple[float, float]:
@@ -192,7 +192,7 @@ def plate_cells(plate: BoltedPlate) -> tuple[Array, Array]:
     done_middle, done_side = [], []
     while middle.size:
         is_loaded = _bolt_distance(plate, middle, side) * EDGE_TOLERANCE_FACTOR < reach
-        split = is_loaded & (np.max(side) > reach / MIN_CELLS_PER_RADIUS * EDGE_TOLERANCE_FACTOR)
+        split = is_loaded & (np.max(side) > reach / MIN_CELLS_PER_PRESSURE_RADIUS * EDGE_TOLERANCE_FACTOR)
         done_middle.append(middle[~split])
         done_side.append(np.broadcast_to(side, middle[~split].shape))
         side = 0.5 * side
@@ -201,21 +201,23 @@ def plate_cells(plate: BoltedPlate) -> tuple[Array, Array]:
     return _remove_holes(plate, np.concatenate(done_middle), np.concatenate(done_side))
 
 
-def _bolt_distance(plate: BoltedPlate, centres: Array, cell_sides: Array) -> Array:
+def _bolt_distance(plate: BoltedPlate, cell_centres: Array, cell_sides: Array) -> Array:
     """Distance (n) [m] from cells, with centres (n, 2) and sides (2) [m], to the nearest bolt axis."""
-    gap = np.maximum(np.abs(centres[:, None, :] - plate.bolts_from_middle) - 0.5 * cell_sides, 0.0)
+    gap = np.maximum(
+        np.abs(cell_centres[:, None, :] - plate.bolt_positions_from_middle) - 0.5 * cell_sides, 0.0
+    )
     return np.asarray(np.min(np.hypot(gap[..., 0], gap[..., 1]), axis=1))
 
 
-def _remove_holes(plate: BoltedPlate, centres: Array, cell_sides: Array) -> tuple[Array, Array]:
+def _remove_holes(plate: BoltedPlate, cell_centres: Array, cell_sides: Array) -> tuple[Array, Array]:
     """Subtract the holes from cells: areas [m2] and centroids [m]; cells inside a hole are omitted."""
     positions = (np.arange(_HOLE_SUBDIVISIONS) + 0.5) / _HOLE_SUBDIVISIONS - 0.5
     grid = np.stack(np.meshgrid(positions, positions, indexing="ij"), -1).reshape(-1, 2)
-    areas, centroids = np.prod(cell_sides, axis=1), centres.copy()
+    areas, centroids = np.prod(cell_sides, axis=1), cell_centres.copy()
     reach = 0.5 * np.hypot(*cell_sides.T) + 0.5 * plate.hole_diameter
-    for bolt in plate.bolts_from_middle:
-        affected = np.flatnonzero(np.hypot(*(centres - bolt).T) < reach)
-        points = centres[affected, None, :] + grid * cell_sides[affected, None, :]
+    for bolt in plate.bolt_positions_from_middle:
+        affected = np.flatnonzero(np.hypot(*(cell_centres - bolt).T) < reach)
+        points = cell_centres[affected, None, :] + grid * cell_sides[affected, None, :]
         solid = (
             np.hypot(*np.moveaxis(points - bolt, -1, 0)) > 0.5 * plate.hole_diameter * EDGE_TOLERANCE_FACTOR
         )
@@ -229,24 +231,26 @@ def _remove_holes(plate: BoltedPlate, centres: Array, cell_sides: Array) -> tupl
     return areas[remaining], centroids[remaining]
 
 
-def pressure_decay(plate: BoltedPlate, distance: Array) -> Array:
+def pressure_decay(plate: BoltedPlate, axis_distance: Array) -> Array:
     """Pressure at distances (...) [m] from a bolt's axis, over the pressure at the edge of its hole [1]."""
     a, R = 0.5 * plate.hole_diameter, plate.pressure_radius
-    r = np.clip(distance, a, R)
+    r = np.clip(axis_distance, a, R)
     return np.asarray((R - r) ** 3 * (3.0 * r + R - 4.0 * a) / (R - a) ** 4)
 
 
 def bolt_pressures(
-    plate: BoltedPlate, cells: tuple[Array, Array] | None = None
+    plate: BoltedPlate, area_cells: tuple[Array, Array] | None = None
 ) -> tuple[Array, Array, Array]:
     """Area shares (k) [1] and positions (k, 2) [m] of the area cells, and pressures (n, k) [1] of each bolt.
 
     Positions are relative to the centroid of the contact, pressures to their mean over the whole contact.
 
-    cells : areas (k) [m2] and centroids (k, 2) [m] from the middle of the plate; None: `plate_cells`
+    area_cells : areas (k) [m2] and centroids (k, 2) [m] from the middle of the plate; None: `plate_cells`
     """
-    areas, points = cells or plate_cells(plate)
-    unit = np.array([_moment_free_pressure(plate, areas, points - bolt) for bolt in plate.bolts_from_middle])
+    areas, points = area_cells or plate_cells(plate)
+    unit = np.array(
+        [_moment_free_pressure(plate, areas, points - bolt) for bolt in plate.bolt_positions_from_middle]
+    )
     share = areas / areas.sum()
     return share, points - share @ points, unit * areas.sum()
 
@@ -264,13 +268,14 @@ def _one_row_equivalent_distance(
     return float(len(plate.x) * (area_shares @ (equal * distances**2)) / reach)
 
 
-def _moment_free_pressure(plate: BoltedPlate, areas: Array, axis_offsets: Array) -> Array:
-    """Pressure (n) [Pa] of a bolt with 1 N at offsets (n, 2) [m] from its axis, without a moment about it.
+def _moment_free_pressure(plate: BoltedPlate, cell_areas: Array, axis_offsets: Array) -> Array:
+    """Pressure (n) [Pa] of a bolt with 1 N at offsets (n, 2) [m] from its axis; its resultant is on the axis.
 
-    Newton's method for the two coefficients of the exponential correction; the logarithm of the total force
-    is a convex function of them.
+    The pressure around the bolt is multiplied by an exponential function of the offset, see `BoltedPlate`.
+    Newton's method finds the two coefficients in the exponent; the logarithm of the total force is a convex
+    function of them.
     """
-    force = areas * pressure_decay(plate, np.hypot(*axis_offsets.T))
+    force = cell_areas * pressure_decay(plate, np.hypot(*axis_offsets.T))
     is_loaded = force > 0.0
     weight, relative = force[is_loaded], axis_offsets[is_loaded] / plate.pressure_radius
     factor = np.zeros(2)
@@ -281,6 +286,6 @@ def _moment_free_pressure(plate: BoltedPlate, areas: Array, axis_offsets: Array)
         if np.max(np.abs(mean)) < _MOMENT_ARM_TOLERANCE:
             break
         factor -= np.linalg.solve((relative - mean).T @ (share[:, None] * (relative - mean)), mean)
-    result = np.zeros_like(areas)
-    result[is_loaded] = share / areas[is_loaded]
+    result = np.zeros_like(cell_areas)
+    result[is_loaded] = share / cell_areas[is_loaded]
     return result

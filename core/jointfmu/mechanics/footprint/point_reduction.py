@@ -14,7 +14,7 @@ import numpy as np
 
 from ...quantity import Array
 from .distribution import PressureDistribution
-from .elimination import NodeIndices, reduce_weights, select_independent, weight_changes
+from .elimination import NodeIndices, find_smallest_weight_changes, reduce_weights, select_independent
 from .reproducible import (
     clear_round_off,
     matrix_product,
@@ -25,7 +25,7 @@ from .reproducible import (
     weighted_sums,
 )
 
-LAW_EXPONENTS = (4.0, 8.0, 16.0, 64.0)
+PRESSURE_LAW_EXPONENTS = (4.0, 8.0, 16.0, 64.0)
 """Exponents N of the laws p ~ delta^N [1], with k ~ p^(1 - 1/N). Hertz has 1.5, rough surfaces about 10; the
 last one is nearly an exponential."""
 SAMPLED_STATE_COUNT = 80
@@ -34,11 +34,11 @@ UNTILTED_STATE_SHARE = 0.4
 """Share of the states without normal displacement and tilt [1]."""
 DISPLACED_STATE_WEIGHT = 0.02
 """Weight of the states with displacement and tilt, over the weight of the others [1]."""
-MAX_OPENING_OVER_APPROACH, MAX_TILT_OPENING_OVER_APPROACH = 0.1, 0.1
+MAX_SAMPLED_OPENING_OVER_APPROACH, MAX_SAMPLED_TILT_OPENING_OVER_APPROACH = 0.1, 0.1
 """Largest normal displacement, and largest opening by tilt at the edge, over the largest approach [1]."""
-MAX_LOST_FORCE_SHARE = 1e-4
+MAX_FORCE_SHARE_LOST_BY_OPENING = 1e-4
 """Share of the force [1] that is lost by opening at the largest moment."""
-MIN_PEAK_SHARE_FACTOR = 0.1
+MIN_PEAK_NODE_SHARE_FACTOR = 0.1
 """Smallest factor [1] on the share of a node with the largest pressure."""
 MIN_POINTS_FOR_PEAK_NODES = 96
 """Smallest number of points [1] for which the nodes with the largest pressure are kept."""
@@ -67,10 +67,12 @@ def reduce_points(pressure_distribution: PressureDistribution, max_point_count: 
         group = np.arange(pressure_distribution.area_share.size)
     nodes, factor = _select_node_groups(rounded_shape, group, max_point_count)
     old_shares = _sum_over_groups(group, pressure_distribution.area_share)
-    exact = _average_over_groups(_scaled_exact_functions(pressure_distribution), pressure_distribution, group)
+    exact = _average_over_groups(
+        _scaled_preserved_functions(pressure_distribution), pressure_distribution, group
+    )
     new_shares, exact_nodes = np.zeros_like(old_shares), exact[:, nodes]
     new_shares[nodes] = factor * old_shares[nodes]
-    new_shares[nodes] += weight_changes(
+    new_shares[nodes] += find_smallest_weight_changes(
         new_shares[nodes],
         exact_nodes,
         weighted_sums(exact, old_shares) - weighted_sums(exact_nodes, new_shares[nodes]),
@@ -81,16 +83,18 @@ def reduce_points(pressure_distribution: PressureDistribution, max_point_count: 
 def _select_node_groups(
     pressure_distribution: PressureDistribution, node_groups: NodeIndices, max_node_count: int
 ) -> tuple[NodeIndices, Array]:
-    """Select groups of nodes that keep the sums; return the groups and the factors on their shares.
+    """Select groups of nodes, with new shares that keep the sums of `preserved_sum_functions` over all nodes.
 
     node_groups : (n) group of each node
+
+    Returns the indices of the groups, and the factors [1] on their shares.
     """
     size, share = np.bincount(node_groups), _sum_over_groups(node_groups, pressure_distribution.area_share)
     factor = np.sqrt(share)
     exact = select_independent(
         factor
         * _average_over_groups(
-            _scaled_exact_functions(pressure_distribution), pressure_distribution, node_groups
+            _scaled_preserved_functions(pressure_distribution), pressure_distribution, node_groups
         ),
         share.size,
     )[1]
@@ -126,18 +130,18 @@ def _minimum_shares(
     """Smallest shares (groups) [1] that the groups must keep: nonzero for nodes with the largest pressure."""
     min_shares = np.zeros_like(group_shares)
     peak_groups = np.unique(node_groups[find_peak_nodes(pressure_distribution)])
-    min_shares[peak_groups] = MIN_PEAK_SHARE_FACTOR * group_shares[peak_groups]
+    min_shares[peak_groups] = MIN_PEAK_NODE_SHARE_FACTOR * group_shares[peak_groups]
     return min_shares
 
 
 def _scale_shares(
-    pressure_distribution: PressureDistribution, node_groups: NodeIndices, group_factors: Array
+    pressure_distribution: PressureDistribution, node_groups: NodeIndices, group_share_factors: Array
 ) -> PressureDistribution:
     """Multiply shares of nodes by the factor (groups) [1] of their group; remove nodes with factor zero."""
-    nodes = np.flatnonzero(group_factors[node_groups] > 0.0)
+    nodes = np.flatnonzero(group_share_factors[node_groups] > 0.0)
     selected = pressure_distribution.select_nodes(nodes)
     return PressureDistribution(
-        selected.area_share * group_factors[node_groups[nodes]],
+        selected.area_share * group_share_factors[node_groups[nodes]],
         selected.position,
         selected.preload_pressure_ratio,
         selected.moment_pressure_ratio,
@@ -192,10 +196,13 @@ def _scale_positions(pressure_distribution: PressureDistribution) -> tuple[Array
     return x, y
 
 
-def exact_sum_functions(
+def preserved_sum_functions(
     x: Array, y: Array, preload_pressure_ratio: Array, moment_pressure_ratio: Array
 ) -> Array:
-    """Functions (12, n) of points (n) whose sums, weighted by share, are kept to round-off."""
+    """Functions (12, n) of n points; a reduction keeps their sums, weighted by share, to round-off.
+
+    The functions are 1, x, y, x^2, x y, y^2, and each pressure ratio times 1, x and y.
+    """
     ones = np.ones_like(x)
     return np.stack(
         [
@@ -215,10 +222,13 @@ def exact_sum_functions(
     )
 
 
-def _scaled_exact_functions(pressure_distribution: PressureDistribution) -> Array:
-    """Functions (12, n) of the nodes whose sums are kept, see `exact_sum_functions`; of the order of 1."""
+def _scaled_preserved_functions(pressure_distribution: PressureDistribution) -> Array:
+    """Functions (12, n) of the nodes whose sums are kept, scaled to the order of 1.
+
+    See `preserved_sum_functions`.
+    """
     steep = max(float(np.max(np.abs(pressure_distribution.moment_pressure_ratio))), 1.0)
-    return exact_sum_functions(
+    return preserved_sum_functions(
         *_scale_positions(pressure_distribution),
         pressure_distribution.preload_pressure_ratio,
         pressure_distribution.moment_pressure_ratio / steep,
@@ -226,7 +236,11 @@ def _scaled_exact_functions(pressure_distribution: PressureDistribution) -> Arra
 
 
 def largest_moment_factor(pressure_distribution: PressureDistribution) -> float:
-    """Factor [1] on the pressure by moment at which opening removes MAX_LOST_FORCE_SHARE of the force."""
+    """Largest factor [1] on the pressure by a moment in the sampled states.
+
+    At this factor the contact opens so far that it loses the share MAX_FORCE_SHARE_LOST_BY_OPENING of its
+    force.
+    """
     low, high = (
         0.0,
         2.0
@@ -244,7 +258,7 @@ def largest_moment_factor(pressure_distribution: PressureDistribution) -> float:
             ]
         )
         lost_share = np.max(weighted_sums(np.maximum(open_to, 0.0), pressure_distribution.area_share))
-        low, high = (middle, high) if lost_share < MAX_LOST_FORCE_SHARE else (low, middle)
+        low, high = (middle, high) if lost_share < MAX_FORCE_SHARE_LOST_BY_OPENING else (low, middle)
     return low
 
 
@@ -263,10 +277,11 @@ def _sample_load_functions(pressure_distribution: PressureDistribution) -> Array
     moment, opening, about_x, about_y = (
         2.0 * ((0.5 + (number + 1.0) * _LOW_DISCREPANCY_INCREMENTS) % 1.0).T[..., None] - 1.0
     )
-    power = np.choose(number % len(LAW_EXPONENTS), LAW_EXPONENTS)
+    power = np.choose(number % len(PRESSURE_LAW_EXPONENTS), PRESSURE_LAW_EXPONENTS)
     is_moved = number >= UNTILTED_STATE_SHARE * SAMPLED_STATE_COUNT
     normal_displacement = is_moved * (
-        MAX_OPENING_OVER_APPROACH * opening + MAX_TILT_OPENING_OVER_APPROACH * (about_x * y - about_y * x)
+        MAX_SAMPLED_OPENING_OVER_APPROACH * opening
+        + MAX_SAMPLED_TILT_OPENING_OVER_APPROACH * (about_x * y - about_y * x)
     )
     approach = take_power_of_two_root(
         np.maximum(

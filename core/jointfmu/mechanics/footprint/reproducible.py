@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ...quantity import Array
 from .distribution import PressureDistribution
 
-BINARY_DIGITS = 20
+ROUNDING_BINARY_DIGITS = 20
 """Binary digits to which numbers are rounded before comparisons [1]. 2^-20 = 1e-6 is far above differences
 between processors, and far below the accuracy of a choice of points."""
 ROUNDING_OFFSET = 0.5 - 0.01 * np.sqrt(2.0)
@@ -27,7 +27,7 @@ ROUND_OFF_OVER_LARGEST_NUMBER = 2.0**-46
 
 
 def round_distribution(
-    pressure_distribution: PressureDistribution, binary_digits: int = BINARY_DIGITS
+    pressure_distribution: PressureDistribution, binary_digits: int = ROUNDING_BINARY_DIGITS
 ) -> PressureDistribution:
     """Round a pressure distribution to a number of significant binary digits.
 
@@ -49,21 +49,23 @@ def round_distribution(
     return PressureDistribution(share, *rounded_values)
 
 
-def round_to_digits(values: Array, binary_digits: int = BINARY_DIGITS) -> Array:
+def round_to_digits(unrounded_values: Array, binary_digits: int = ROUNDING_BINARY_DIGITS) -> Array:
     """Round values to a number of binary digits of the largest one."""
-    exponent = np.frexp(np.max(np.abs(values)))[1]
-    return np.asarray(np.ldexp(_round_to_steps(np.ldexp(values, -exponent), binary_digits), exponent))
+    exponent = np.frexp(np.max(np.abs(unrounded_values)))[1]
+    return np.asarray(
+        np.ldexp(_round_to_steps(np.ldexp(unrounded_values, -exponent), binary_digits), exponent)
+    )
 
 
-def rank_descending(values: Array) -> NDArray[np.intp]:
+def rank_descending(ranked_values: Array) -> NDArray[np.intp]:
     """Ranks (n) of values in descending order, after rounding; equal values keep their order."""
-    return np.argsort(np.argsort(-round_to_digits(values), kind="stable"), kind="stable")
+    return np.argsort(np.argsort(-round_to_digits(ranked_values), kind="stable"), kind="stable")
 
 
-def _round_to_steps(values: Array, binary_digits: int) -> Array:
+def _round_to_steps(unrounded_values: Array, binary_digits: int) -> Array:
     """Round values between -1 and 1 to multiples of 2^-binary_digits."""
-    sizes = np.floor(np.ldexp(np.abs(values), binary_digits) + ROUNDING_OFFSET)
-    return np.asarray(np.ldexp(np.copysign(sizes, values) + 0.0, -binary_digits))
+    sizes = np.floor(np.ldexp(np.abs(unrounded_values), binary_digits) + ROUNDING_OFFSET)
+    return np.asarray(np.ldexp(np.copysign(sizes, unrounded_values) + 0.0, -binary_digits))
 
 
 def clear_round_off(pressure_distribution: PressureDistribution) -> PressureDistribution:
@@ -72,9 +74,13 @@ def clear_round_off(pressure_distribution: PressureDistribution) -> PressureDist
     The limit is ROUND_OFF_OVER_LARGEST_NUMBER.
     """
 
-    def clear_small_values(values: Array) -> Array:
+    def clear_small_values(number_array: Array) -> Array:
         """Replace small values of one array by zeros."""
-        return np.where(np.abs(values) > ROUND_OFF_OVER_LARGEST_NUMBER * np.max(np.abs(values)), values, 0.0)
+        return np.where(
+            np.abs(number_array) > ROUND_OFF_OVER_LARGEST_NUMBER * np.max(np.abs(number_array)),
+            number_array,
+            0.0,
+        )
 
     position = np.column_stack([clear_small_values(values) for values in pressure_distribution.position.T])
     return PressureDistribution(
@@ -85,14 +91,14 @@ def clear_round_off(pressure_distribution: PressureDistribution) -> PressureDist
     )
 
 
-def weighted_sums(rows: Array, weights: Array) -> Array:
+def weighted_sums(matrix_rows: Array, column_weights: Array) -> Array:
     """Weighted sums (m) of rows (m, n) with weights (n)."""
-    return np.asarray(np.add.reduce(rows * weights, axis=1))
+    return np.asarray(np.add.reduce(matrix_rows * column_weights, axis=1))
 
 
-def linear_combination(weights: Array, rows: Array) -> Array:
+def linear_combination(row_weights: Array, matrix_rows: Array) -> Array:
     """Linear combination (n) of rows (m, n) with weights (m)."""
-    return np.asarray(np.add.reduce(weights[:, None] * rows, axis=0))
+    return np.asarray(np.add.reduce(row_weights[:, None] * matrix_rows, axis=0))
 
 
 def matrix_product(left_rows: Array, right_rows: Array) -> Array:
@@ -103,11 +109,11 @@ def matrix_product(left_rows: Array, right_rows: Array) -> Array:
     return out
 
 
-def gram_matrix(rows: Array) -> Array:
+def gram_matrix(matrix_rows: Array) -> Array:
     """Symmetric matrix product a a^T (m, m) of rows a (m, n), summed in the order of the columns."""
-    columns, out = rows.T.copy(), np.empty((len(rows), len(rows)))
-    for first in range(0, len(rows), GRAM_BLOCK_SIZE):
-        last = min(first + GRAM_BLOCK_SIZE, len(rows))
+    columns, out = matrix_rows.T.copy(), np.empty((len(matrix_rows), len(matrix_rows)))
+    for first in range(0, len(matrix_rows), GRAM_BLOCK_SIZE):
+        last = min(first + GRAM_BLOCK_SIZE, len(matrix_rows))
         terms = np.zeros((1 + GRAM_BATCH_SIZE, last - first, last))  # the sum so far, then products
         for begin in range(0, len(columns), GRAM_BATCH_SIZE):
             batch = columns[begin : begin + GRAM_BATCH_SIZE]
@@ -129,23 +135,23 @@ def successive_powers(power_base: float, power_count: int) -> Array:
     return np.multiply.accumulate(np.full(power_count, power_base))
 
 
-def take_power_of_two_root(values: Array, exponent: Array) -> Array:
+def take_power_of_two_root(radicands: Array, root_order: Array) -> Array:
     """Roots values^(1/exponent) (m, n) by repeated square roots, of values >= 0; exponents are 2, 4, ... 64.
 
-    values   : (m, n) or (m, 1)
-    exponent : (m, 1)
+    radicands : (m, n) or (m, 1)
+    root_order : (m, 1)
     """
-    return _apply_repeatedly(np.sqrt, values, exponent)
+    return _apply_repeatedly(np.sqrt, radicands, root_order)
 
 
-def raise_to_power_of_two(values: Array, exponent: Array) -> Array:
+def raise_to_power_of_two(power_bases: Array, powers_of_two: Array) -> Array:
     """Raise values (m, n) to the exponents (m, 1) by repeated squaring; exponents are 2, 4, 8, ... 64."""
-    return _apply_repeatedly(np.square, values, exponent)
+    return _apply_repeatedly(np.square, power_bases, powers_of_two)
 
 
-def _apply_repeatedly(function: np.ufunc, values: Array, exponent: Array) -> Array:
-    """Apply a function to values log2(exponent) times, one after the other. Returns an array (m, n)."""
-    out = np.broadcast_to(values, np.broadcast_shapes(values.shape, exponent.shape)).copy()
+def _apply_repeatedly(repeated_function: np.ufunc, start_values: Array, power_of_two: Array) -> Array:
+    """Apply a function to values log2(power_of_two) times, one after the other. Returns an array (m, n)."""
+    out = np.broadcast_to(start_values, np.broadcast_shapes(start_values.shape, power_of_two.shape)).copy()
     for k in range(6):
-        function(out, out=out, where=exponent > 2.0**k)
+        repeated_function(out, out=out, where=power_of_two > 2.0**k)
     return out

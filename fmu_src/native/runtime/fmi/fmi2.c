@@ -136,7 +136,8 @@ fmi2Status fmi2CancelStep(fmi2Component c)
 {
     if (instance_check_mode(c, __func__, CO_SIMULATION | ANY_MODE))
         instance_log_error(c, __func__,
-                           "no step is pending; expected none, for each step ends before fmi2DoStep returns");
+                           "no step is pending, because each step ends before fmi2DoStep returns; expected no such "
+                           "call");
     return fmi2Error;
 }
 

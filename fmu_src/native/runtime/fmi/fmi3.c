@@ -43,13 +43,13 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String instanceName, fmi3String ins
     const Logger logger = {log_message, (void (*)(void))logMessage, instanceEnvironment};
     if (eventModeUsed)
         return instance_refuse_creation(__func__, instanceName, logger,
-                                        "event mode is wanted in co-simulation; expected eventModeUsed = false, as the "
-                                        "model description says");
+                                        "eventModeUsed = true; expected false, because this FMU has no event mode in "
+                                        "co-simulation");
     Instance *m = instance_create(__func__, 3, CO_SIMULATION, instanceName, instantiationToken, loggingOn, logger);
     if (m && nRequiredIntermediateVariables)
         instance_log(m, WARNING, LOG_WARNINGS,
-                     "fmi3InstantiateCoSimulation: intermediate variables are wanted and left out; "
-                     "expected none, for there is no intermediate update");
+                     "fmi3InstantiateCoSimulation: the required intermediate variables are ignored; "
+                     "expected none, because this FMU has no intermediate update");
     return m;
 }
 

@@ -76,7 +76,7 @@ static Status log_input_refusal(const Instance *m, Status refusal, size_t i)
 }
 
 /* Largest number of inputs in a refusal: a system has hundreds, and the reason must fit. */
-enum { MAX_LISTED_INPUTS = 4 };
+enum { MAX_INPUTS_IN_ERROR_MESSAGE = 4 };
 
 /* Number of inputs with a larger magnitude than input i; of equal ones the first counts as larger. */
 static size_t magnitude_rank(const double *inputs, size_t i)
@@ -97,7 +97,7 @@ static Status log_output_refusal(const Instance *m, Status refusal)
         first_infinite++;
     for (size_t i = FIRST_INPUT; i < FIRST_OUTPUT; i++)
         if (m->state.values[i] != 0.0) {
-            if (magnitude_rank(m->state.values + FIRST_INPUT, i - FIRST_INPUT) >= MAX_LISTED_INPUTS) {
+            if (magnitude_rank(m->state.values + FIRST_INPUT, i - FIRST_INPUT) >= MAX_INPUTS_IN_ERROR_MESSAGE) {
                 omitted++;
                 continue;
             }
@@ -107,7 +107,8 @@ static Status log_output_refusal(const Instance *m, Status refusal)
         }
     if (omitted)
         text_append_format(&reason, " and %zu more", omitted);
-    text_append_format(&reason, ": too large, %s is not finite", variables[FIRST_OUTPUT + first_infinite].name);
+    text_append_format(&reason, ": the inputs are too large, the output %s is not finite",
+                       variables[FIRST_OUTPUT + first_infinite].name);
     return log_refusal(m, refusal, &reason);
 }
 

@@ -152,7 +152,7 @@ Status instance_set_input_derivatives(Instance *m, const char *function, const u
 /* Directional derivative of the outputs `unknowns` along `seed`, given for the inputs and states `knowns`. */
 Status instance_directional_derivative(Instance *m, const char *function, const uint32_t unknowns[], size_t n_unknowns,
                                        const uint32_t knowns[], size_t n_knowns, const double seed[], double result[]);
-/* Adjoint derivative: of the sum of seed[i] * unknowns[i], with respect to each of `knowns`. */
+/* Adjoint derivative: derivative of the sum of seed[i] * unknowns[i] with respect to each of `knowns`. */
 Status instance_adjoint_derivative(Instance *m, const char *function, const uint32_t unknowns[], size_t n_unknowns,
                                    const uint32_t knowns[], size_t n_knowns, const double seed[], double result[]);
 

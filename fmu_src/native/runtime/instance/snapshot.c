@@ -158,12 +158,13 @@ static bool check_saved_state(const Instance *m, const char *function, const Sav
     if (memcmp(saved->magic, magic, sizeof magic) == 0 && saved->fmi_version == m->fmi_version &&
         memcmp(saved->token, data.token, sizeof data.token) == 0)
         return true;
-    return instance_log_error(m, function, "this is not an FMU state of %s; expected one that it gave", data.name) == OK;
+    return instance_log_error(m, function, "the FMU state was not made by %s; expected one that this FMU returned",
+                              data.name) == OK;
 }
 
 static Status refuse_bytes(const Instance *m, const char *function, const char *problem)
 {
-    return instance_log_error(m, function, "the bytes are %s; expected a state that %s with the token %s serialized",
+    return instance_log_error(m, function, "the bytes are %s; expected a state serialized by %s with the token %s",
                               problem, data.name, data.token);
 }
 
@@ -179,7 +180,7 @@ static bool check_header(const Instance *m, const char *function, const void *by
     transfer_header(&from, &header);
     Text problem = {0};
     if (strcmp(header.magic, own.magic) != 0)
-        text_append(&problem, "no state at all");
+        text_append(&problem, "no FMU state");
     else if (header.fmi_version != own.fmi_version)
         text_append_format(&problem, "a state of FMI %zu, not %zu", (size_t)header.fmi_version,
                            (size_t)own.fmi_version);

@@ -93,7 +93,7 @@ Status instance_do_step(Instance *m, const char *function, double time, double s
     if (fabs(time - state->values[0]) > time_tolerance)
         return log_step_error(m, function, "the communication point is", time, size, "it at ", state->values[0]);
     if (end > state->stop_time + time_tolerance)
-        return log_step_error(m, function, "the step ends after the stop time", time, size, "an end until ",
+        return log_step_error(m, function, "the step ends after the stop time", time, size, "an end at or before ",
                               state->stop_time);
     const bool inputs_move = has_input_derivatives(state), state_changes = IS_TIME_DEPENDENT || inputs_move;
     if (state_changes && !instance_back_up_state(m, function))

@@ -6,7 +6,7 @@
 #include <string.h>
 
 _Static_assert(N_LAW_TOTALS == 4, "load and normal stiffness with slopes");
-_Static_assert(CLOSING_STEPS % 2 == 0, "the error of a curve is measured on pairs of segments");
+_Static_assert(CONTACT_CLOSING_STEPS % 2 == 0, "the error of a curve is measured on pairs of segments");
 
 enum {
     LAW_STATE_RESULTS = 3 * N_LAW_STATE + 1
@@ -23,9 +23,9 @@ typedef struct {
  * without it the approach would start at minus infinity. The law state is constant there. */
 static bool tabulate_closing(Curve *curve, const TableNode *end)
 {
-    for (int i = 0; i <= CLOSING_STEPS; i++) {
+    for (int i = 0; i <= CONTACT_CLOSING_STEPS; i++) {
         const double arguments[4] = {end->curve.y, end->curve.stiffness, end->curve.stiffness_slope,
-                                     (double)i / (double)CLOSING_STEPS};
+                                     (double)i / (double)CONTACT_CLOSING_STEPS};
         double y[4];
         closing_pressure(arguments, NULL, y);
         const Node node = {.x = y[0], .y = y[1], .stiffness = y[2], .stiffness_slope = y[3]};
@@ -46,7 +46,8 @@ static TableNode table_node(const SpotDistribution *spots, const double *c, doub
                             double regime_end, double x)
 {
     double y[N_LAW_TOTALS], one_sided[N_LAW_TOTALS], state[LAW_STATE_RESULTS];
-    const double one_sided_u = fmin(fmax(u, regime_start + ONE_SIDED_OFFSET), regime_end - ONE_SIDED_OFFSET);
+    const double one_sided_u =
+        fmin(fmax(u, regime_start + ONE_SIDED_DERIVATIVE_OFFSET), regime_end - ONE_SIDED_DERIVATIVE_OFFSET);
     spot_totals(spots, c, u, y);
     if (one_sided_u != u)
         spot_totals(spots, c, one_sided_u, one_sided);
@@ -88,7 +89,7 @@ static double approach_increment(const SpotDistribution *spots, const double *c,
 static int count_segments(const SpotDistribution *spots, double regime_start, double regime_end, int steps)
 {
     const double pairs = ceil(0.5 * steps * (regime_end - regime_start));
-    const int least = regime_start >= spots->first_kink ? MIN_STEP_FACTOR_BETWEEN_KINKS * steps : 2;
+    const int least = regime_start >= spots->first_kink_log_area ? MIN_STEP_FACTOR_BETWEEN_KINKS * steps : 2;
     return pairs < (double)CURVE_NODES ? (int)fmax(2.0 * pairs, least) : CURVE_NODES;
 }
 
@@ -129,14 +130,15 @@ bool tabulate_approach(ApproachTable *approach, Curve *curve, const SpotDistribu
     if (!(last > first)) {
         spot_totals(spots, c, first, y);
         text_append_format(reason,
-                           "the law has no stiffness below %.3g Pa, above the hardness %.3g Pa: the surface (D, G) "
-                           "leaves only plastic spots",
-                           y[0] / spots->nominal_area, spots->max_pressure);
+                           "at every pressure up to the hardness, %.3g Pa, all contact spots are plastic, so the "
+                           "interface has no stiffness (it would start at %.3g Pa); check surface.D and surface.G (G "
+                           "in m)",
+                           spots->max_pressure, y[0] / spots->nominal_area);
         return false;
     }
     approach->first_log_area = first;
     approach->last_log_area = last;
-    int pieces = 0, n_nodes = CLOSING_STEPS + 1;
+    int pieces = 0, n_nodes = CONTACT_CLOSING_STEPS + 1;
     ends[0] = first;
     for (int i = 0; i < spots->n_regime_ends; i++)
         if (spots->regime_ends[i] > first && spots->regime_ends[i] < last)

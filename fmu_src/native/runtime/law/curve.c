@@ -191,7 +191,7 @@ double curve_inverse_safeguarded(const Curve *curve, double load)
     const int i = curve_find_segment_of_load(curve, load);
     const double *a = curve->segments[i].coefficients;
     double low = 0.0, high = 1.0, t = curve_estimate_inverse(curve, i, load);
-    for (int k = 0; k < MAX_ITERATIONS; k++) {
+    for (int k = 0; k < MAX_INVERSION_ITERATIONS; k++) {
         const double residual = load - polynomial_value(a, t), s = polynomial_slope(a, t);
         if (residual > 0.0)
             low = t;

@@ -223,4 +223,19 @@ static inline double segment_energy(const Curve *curve, int segment, double t)
     return curve->node_energy[segment] + (curve->segments[segment + 1].x - curve->segments[segment].x) * t * mean;
 }
 
+/* Energy at any displacement x, also beyond the table: integral of the load from the first node to x. Sets also the
+ * load y[0] and its derivatives with respect to x up to `order` (1 to 4) there. */
+static inline double curve_energy(const Curve *curve, double x, int order, double *y)
+{
+    const double inside = x < curve->start.x ? curve->start.x : (x > curve->end.x ? curve->end.x : x);
+    const int segment = curve_find_segment(curve, inside);
+    const double t = segment_parameter(curve, segment, inside), excess = x - inside;
+    segment_derivatives(curve, segment, t, order, y);
+    const double energy = segment_energy(curve, segment, t) + excess * (y[0] + 0.5 * excess * y[1]);
+    y[0] += excess * y[1];
+    for (int k = 2; k <= order && excess != 0.0; k++)
+        y[k] = 0.0;
+    return energy;
+}
+
 #endif

@@ -58,7 +58,8 @@ static double exponential(double high, double low)
         return 0.0;
     const double k = (high * INTERVALS_PER_LOG_2 + ROUNDING_SHIFT) - ROUNDING_SHIFT;
     const double r = ((high - k * LOG_2_PER_INTERVAL) - k * LOG_2_PER_INTERVAL_LOW) + low;
-    const int whole = (int)k, interval = whole & (TABLE_INTERVALS - 1), power = (whole - interval) / TABLE_INTERVALS;
+    const int whole = (int)k, interval = whole & (EXP_LOG_TABLE_INTERVALS - 1);
+    const int power = (whole - interval) / EXP_LOG_TABLE_INTERVALS;
     const double square = r * r;
     const double last = (1.0 / 24.0 + r * (1.0 / 120.0)) + square * (1.0 / 720.0 + r * (1.0 / 5040.0));
     const double more = EXP_TABLE[interval][1] + r + square * (0.5 + r * (1.0 / 6.0)) + square * square * last;
@@ -84,7 +85,7 @@ static inline ReducedLogArgument reduce_log_argument(double x)
     }
     const uint64_t bits = bits_of(x), from = bits - LOG_BEGIN;
     const int raised = (int)((int64_t)from >> 52);
-    const double *row = LOG_TABLE[(from >> LOG_BITS) & (TABLE_INTERVALS - 1)];
+    const double *row = LOG_TABLE[(from >> LOG_BITS) & (EXP_LOG_TABLE_INTERVALS - 1)];
     const double z = from_bits(bits - ((uint64_t)raised << 52));
     const double z_first = from_bits((bits_of(z) + 0x80000000) & 0xffffffff00000000);
     const DoubleDouble r = two_sum(z_first * row[0] - 1.0, (z - z_first) * row[0]);

@@ -9,7 +9,7 @@ enum { LANES = 4 };
 
 typedef struct {
     double x[LANES], y[LANES], t[LANES];
-    double xx[LANES], xy[LANES], yy[LANES], xt[LANES], yt[LANES], tt[LANES], loss[LANES];
+    double xx[LANES], xy[LANES], yy[LANES], xr[LANES], yr[LANES], rr[LANES], loss[LANES];
 } Lanes;
 
 static inline double lane_sum(const double *lane)
@@ -20,8 +20,8 @@ static inline double lane_sum(const double *lane)
 static inline SliderResultant sum_lanes(const Lanes *s)
 {
     return (SliderResultant){.force = {lane_sum(s->x), lane_sum(s->y), lane_sum(s->t)},
-                             .tangent = {lane_sum(s->xx), lane_sum(s->xy), lane_sum(s->yy), lane_sum(s->xt),
-                                         lane_sum(s->yt), lane_sum(s->tt)},
+                             .tangent = {lane_sum(s->xx), lane_sum(s->xy), lane_sum(s->yy), lane_sum(s->xr),
+                                         lane_sum(s->yr), lane_sum(s->rr)},
                              .loss = lane_sum(s->loss)};
 }
 
@@ -202,12 +202,12 @@ int sliders_advance_along_x(int n, const Sliders2D *s, double *force_end, Slider
     for (int k = first; k < n; k += 2)
         for (int l = 0; l < 2; l++) {
             const double xx = results.limit_excess[k + l] > 0.0 ? 0.0 : s->K[k + l], yy = s->K[k + l];
-            const double x_t = xx * s->torsion_directions[0][k + l], y_t = yy * s->torsion_directions[1][k + l];
+            const double x_r = xx * s->torsion_directions[0][k + l], y_r = yy * s->torsion_directions[1][k + l];
             lanes.xx[l] += xx;
             lanes.yy[l] += yy;
-            lanes.xt[l] += x_t;
-            lanes.yt[l] += y_t;
-            lanes.tt[l] += x_t * s->torsion_directions[0][k + l] + y_t * s->torsion_directions[1][k + l];
+            lanes.xr[l] += x_r;
+            lanes.yr[l] += y_r;
+            lanes.rr[l] += x_r * s->torsion_directions[0][k + l] + y_r * s->torsion_directions[1][k + l];
             lanes.loss[l] += results.loss[k + l];
         }
     *sum = sum_lanes(&lanes);
@@ -377,16 +377,16 @@ ALWAYS_INLINE void sum_each(int first, int end, const Sliders2D *s, double *cons
         for (int l = 0; l < LANES; l++) {
             const int k = i + l;
             const double x = all[0][k], y = all[1][k], xx = all[2][k], xy = all[3][k], yy = all[4][k];
-            const double x_t = xx * e_x[k] + xy * e_y[k], y_t = xy * e_x[k] + yy * e_y[k];
+            const double x_r = xx * e_x[k] + xy * e_y[k], y_r = xy * e_x[k] + yy * e_y[k];
             lanes->x[l] += x;
             lanes->y[l] += y;
             lanes->t[l] += x * e_x[k] + y * e_y[k];
             lanes->xx[l] += xx;
             lanes->xy[l] += xy;
             lanes->yy[l] += yy;
-            lanes->xt[l] += x_t;
-            lanes->yt[l] += y_t;
-            lanes->tt[l] += x_t * e_x[k] + y_t * e_y[k];
+            lanes->xr[l] += x_r;
+            lanes->yr[l] += y_r;
+            lanes->rr[l] += x_r * e_x[k] + y_r * e_y[k];
             lanes->loss[l] += all[MAPPING_LOSS][k];
         }
     }

@@ -21,8 +21,9 @@ typedef struct {
  * displacement       : increment along x, along y and around the centre of the patch
  * torsion_directions : displacement of each slider along x and y over that around the centre
  * retention, secant_stiffness : elastic predictor, retention times force plus secant_stiffness times displacement
- * growth_start, growth_end    : the friction limit is limit_start + K growth_start at the start of the increment and
- *                               limit_end + K growth_end at its end, but at least 0 */
+ * growth_start, growth_end    : [m] friction coefficient over stiffness ratio, times the approach. The friction limit
+ *                               is limit_start + K growth_start at the start of the increment, and limit_end +
+ *                               K growth_end at its end, but at least 0 */
 typedef struct {
     const double *force[2], *torsion_directions[2], *retention, *secant_stiffness;
     const double *K, *compliance, *limit_start, *limit_end;
@@ -43,8 +44,8 @@ static inline double limit_at_growth(double limit_at_zero_growth, double K, doub
     return new_limit > 0.0 ? new_limit : 0.0;
 }
 
-/* Sums over sliders: force along x, along y and around the centre; tangent stiffness xx, xy, yy, xt, yt, tt for a
- * further displacement, t around the centre; dissipated energy. Along one direction the tangent is xx along it and yy
+/* Sums over sliders: force along x, along y and around the centre; tangent stiffness xx, xy, yy, xr, yr, rr for a
+ * further displacement, r around the centre; dissipated energy. Along one direction the tangent is xx along it and yy
  * across. */
 typedef struct {
     double force[3], tangent[6], loss;

@@ -50,7 +50,7 @@ bool set_spot_distribution(SpotDistribution *spots, const double *c, Text *reaso
     spots->reference_area = values[2];
     spots->size_exponent = values[3];
     spots->stiffness_onset = values[4];
-    spots->first_kink = values[5];
+    spots->first_kink_log_area = values[5];
     law_range_bounds(0, c, spots->range_bounds);
     law_regime_ends(0, c, ends);
     set_regime_ends(spots, ends);
@@ -67,8 +67,8 @@ bool set_spot_distribution(SpotDistribution *spots, const double *c, Text *reaso
     }
     if (!is_representable)
         text_append_format(reason,
-                           "the parameters give a critical spot area of %g m2 or a load that is not representable; "
-                           "check D (close to the end of its interval?) and extreme values of G, h and others",
+                           "the critical spot area, %g m2, or a contact load is too small or too large to be computed; "
+                           "check the parameters: D close to an end of its interval, or an extreme value of G or h",
                            spots->reference_area);
     return is_representable;
 }
@@ -79,17 +79,17 @@ bool solve_largest_spot(const SpotDistribution *spots, const double *c, double p
     const double log_load = portable_log(pressure * spots->nominal_area);
     if (!(log_load >= spots->min_log_load && log_load <= spots->max_log_load)) {
         text_append_format(reason,
-                           "pressure = %g Pa is outside [%.3g, %.3g]: its largest spot is not representable "
-                           "with the critical area %.3g m2 of this surface",
+                           "pressure = %g Pa is outside [%.3g, %.3g]: the largest contact spot is too small or too "
+                           "large to be computed (critical area of the surface: %.3g m2)",
                            pressure, portable_exp(spots->min_log_load) / spots->nominal_area,
                            portable_exp(spots->max_log_load) / spots->nominal_area, spots->reference_area);
         return false;
     }
     double x = *u, low = -INFINITY, high = INFINITY, y[2] = {0.0, 1.0};
-    for (int k = 0; k < MAX_ITERATIONS; k++) {
+    for (int k = 0; k < MAX_INVERSION_ITERATIONS; k++) {
         evaluate_log_load(spots, c, x, y);
         const double residual = log_load - y[0];
-        const double a = residual / (MIN_LOAD_SLOPE * spots->size_exponent), b = residual / MAX_LOAD_SLOPE;
+        const double a = residual / (MIN_LOG_LOAD_SLOPE * spots->size_exponent), b = residual / MAX_LOG_LOAD_SLOPE;
         const double min_step = fmin(a, b), max_step = fmax(a, b);
         const double step = fmin(fmax(residual / y[1], min_step), max_step);
         low = fmax(low, x + min_step);
@@ -101,6 +101,9 @@ bool solve_largest_spot(const SpotDistribution *spots, const double *c, double p
             return true;
         }
     }
-    text_append_format(reason, "the inversion of the pressure %g Pa did not converge", pressure);
+    text_append_format(reason,
+                       "the iteration for the largest contact spot did not converge at pressure = %g Pa; "
+                       "check the parameters and the pressure",
+                       pressure);
     return false;
 }

@@ -18,7 +18,7 @@ typedef struct {
     double reference_area;  /* spot area [m2] at log-area 0 */
     double size_exponent;   /* exponent m of the size distribution of the spots [1] */
     double stiffness_onset; /* log-area up to which all spots are plastic: no stiffness */
-    double first_kink;      /* log-area from which the stiffness is a spline; infinity: nowhere */
+    double first_kink_log_area;      /* log-area from which the stiffness is a spline; infinity: nowhere */
     int n_regime_ends;
     double
         regime_ends[N_LAW_REGIME_ENDS + 1]; /* log-areas, ascending, at which the derivative of the stiffness jumps */

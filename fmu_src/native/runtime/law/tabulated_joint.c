@@ -70,17 +70,19 @@ bool refine_curve(Joint *joint, TabulateFunction tabulate, int steps, Text *reas
         if (!tabulate(joint, steps * factor, reason)) {
             if (reason->length == 0)
                 text_append_format(
-                    reason, "the table needs more than %g nodes: the law is not smooth enough with these parameters",
+                    reason,
+                    "the table of the law needs more than %g nodes: "
+                    "the law is not smooth enough with these parameters; check them for extreme values",
                     (double)CURVE_NODES);
             return false;
         }
-        if (joint->curve.error <= MAX_ERROR)
+        if (joint->curve.error <= MAX_INTERPOLATION_ERROR)
             return true;
     }
     text_append_format(reason,
-                       "the table of %g nodes has an interpolation error of %.2g, allowed is %g: "
-                       "the law is not smooth enough with these parameters",
-                       (double)joint->curve.n, joint->curve.error, MAX_ERROR);
+                       "the table of the law has an interpolation error of %.2g with %g nodes, allowed is %g: "
+                       "the law is not smooth enough with these parameters; check them for extreme values",
+                       joint->curve.error, (double)joint->curve.n, MAX_INTERPOLATION_ERROR);
     return false;
 }
 

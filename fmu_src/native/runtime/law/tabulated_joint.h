@@ -1,4 +1,4 @@
-/* Joint with a tabulated curve. Its own folder defines JointModel, which has its other tables. */
+/* Joint with a tabulated curve of load over displacement. Its own folder defines JointModel: its other tables. */
 #ifndef JOINTFMU_TABULATED_JOINT_H
 #define JOINTFMU_TABULATED_JOINT_H
 
@@ -19,7 +19,7 @@ struct Joint {
 bool tabulate_model(Joint *joint, Text *reason);
 
 /* Function that tabulates a curve with a number of steps. `refine_curve` calls it with more and more steps, until the
- * interpolation error is at most MAX_ERROR. false: refused, with the reason. */
+ * interpolation error is at most MAX_INTERPOLATION_ERROR. false: refused, with the reason. */
 typedef bool (*TabulateFunction)(Joint *joint, int steps, Text *reason);
 bool refine_curve(Joint *joint, TabulateFunction tabulate, int steps, Text *reason);
 

@@ -1,7 +1,7 @@
 """Export of the toy joint: the spring as a table."""
 
 import numpy as np
-from jointfmu_tools.exchange.export.exports import Exports, LoadCurveExport
+from jointfmu_tools.exchange.export.exports import JointExports, LoadCurveExport
 from jointfmu_tools.exchange.export.tables import LoadTable
 
 from jointfmu.joints.model import Variable
@@ -15,6 +15,4 @@ def _line(spring, state, error):
 
 
 COLUMNS = (KIND.variables["s_rel"], Variable("pull", "N", "force that holds it"), KIND.variables["K"])
-EXPORTS = Exports(
-    curve=LoadCurveExport(meaning="force over s", columns=COLUMNS, table_name="force", compute_table=_line)
-)
+EXPORTS = JointExports(curve=LoadCurveExport("force over s", COLUMNS, "force", compute_table=_line))

@@ -6,9 +6,9 @@ from jointfmu_tools.studies.uncertainty.curves import LoadCurves
 from .. import KIND
 
 UNCERTAINTY_CURVES = LoadCurves(
-    model="ToySpring",
-    load=KIND.variables["s_rel"],
+    fmu_name="ToySpring",
+    ramped_input=KIND.variables["s_rel"],
     outputs=(KIND.variables["f"],),
-    default_end=lambda spring: 1e-3,
+    default_ramp_end=lambda spring: 1e-3,
     max_load=lambda spring: np.inf,
 )

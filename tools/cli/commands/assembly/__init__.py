@@ -20,29 +20,42 @@ if TYPE_CHECKING:
 
 def declare_assembly_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the assembly file, `--preload` and `--params`."""
-    declare_argument(parser, "assembly", Path, "assembly file: bodies and bolts (TOML)", "ASSEMBLY")
+    declare_argument(
+        parser,
+        "assembly",
+        Path,
+        "assembly file with bodies and bolts (TOML), as in models/assemblies",
+        "ASSEMBLY",
+    )
     declare_argument(parser, "--preload", float, "preload of each bolt [N]", "F", default=9e3)
-    declare_argument(parser, "--params", Path, "parameter file of the interface (default: box specimen)")
+    declare_argument(
+        parser,
+        "--params",
+        Path,
+        "parameter file of a bolted joint, for the interface (default: box specimen of Zhao 2018)",
+    )
 
 
-def load_joint_file(path: Path | None) -> ParameterFile:
+def load_joint_file(parameter_path: Path | None) -> ParameterFile:
     """Load the parameter file of a bolted joint; None: the default file.
 
     Raises ValueError for a file of another joint.
     """
-    if path is None:
+    if parameter_path is None:
         return load_default(KIND.name)
-    file = load_parameter_file(path)
+    file = load_parameter_file(parameter_path)
     if file.joint != KIND.name:
-        raise ValueError(f"{path}: joint = {file.joint!r}, expected a parameter file of a {KIND.name!r}")
+        raise ValueError(
+            f"{parameter_path}: joint = {file.joint!r}, expected a parameter file of a {KIND.name!r}"
+        )
     return file
 
 
-def check_bolt_stiffness(option: str, parameter_file: ParameterFile) -> None:
+def check_bolt_stiffness(option_name: str, parameter_file: ParameterFile) -> None:
     """Raise ValueError if an option for the complete joint is set and the file has no bolt stiffness."""
     if not parameter_file.values_by_name.get("bolt_stiffness", 0.0) > 0.0:
         raise ValueError(
-            f"{option} needs the stiffness of a bolt; state bolt_stiffness above 0 N/m in the file of "
+            f"{option_name} needs the stiffness of a bolt; state bolt_stiffness above 0 N/m in the file of "
             "--params"
         )
 
@@ -54,7 +67,7 @@ def judge_stiffness_and_preload(
     mean_pressure: float,
     peak_pressure: float,
 ) -> Plausibility:
-    """Judge the stiffness of an assembly's contact, and the preload against the proof load of the bolts.
+    """Assess whether the contact stiffness of an assembly is plausible; warn of a preload above proof load.
 
     preload       : preload of each bolt [N]
     mean_pressure : mean contact pressure [Pa]
@@ -66,7 +79,7 @@ def judge_stiffness_and_preload(
         find_rms_height(parameter_file),
         peak_pressure,
     )
-    return judgement.with_warnings(
+    return judgement.prepend_warnings(
         warn_overload("preload", preload, proof_load(assembly.bolts.hole_diameter))
     )
 
@@ -86,8 +99,8 @@ def replace_assembly_parameters(
         body = getattr(assembly, name)
         changes |= {f"{name}.E": body.E, f"{name}.nu": body.nu}
     if include_bolts:
-        rows = assembly.outer_rows()
-        changes |= {"n_bolts": float(len(assembly.bolts.positions))}
+        rows = assembly.find_outer_rows()
+        changes |= {"n_bolts": float(len(assembly.bolts.bolt_positions))}
         if rows is None:
             changes |= {"row_bolts": 1.0, "row_distance": assembly.bolts.head_diameter}
         else:

@@ -10,7 +10,7 @@ from jointfmu.quantity import Array
 
 from ....inputs.drawing.reading import parse_number, parse_numbers
 from ....inputs.drawing.tables import read_threads
-from ....inputs.fields.nodal_result import ContactField
+from ....inputs.fields.nodal_result import ContactPressureField
 from ....joints.bolted_joint.field import PlaneLayout
 from ...command import declare_argument
 from . import check_bolt_stiffness
@@ -31,21 +31,31 @@ def declare_body_arguments(parser: argparse.ArgumentParser) -> None:
         "--thickness",
         nargs=2,
         metavar=("T1", "T2"),
-        help="thicknesses of both plates [mm]: write the complete joint (sides = "
-        "elastic), with plates as large as the rectangle around the contact (default: write the interface "
-        "only)",
+        help="thicknesses of both plates [mm]: write the complete joint (sides = elastic) with rectangular "
+        "plates that enclose the contact (default: write the interface only)",
     )
     parser.add_argument(
         "--attached",
         choices=("faces", "edge", "heads"),
-        help="faces of the plates that move with the connected bodies (default: faces)",
+        help="for --thickness: surfaces that move rigidly with the connected bodies: outer faces, edges "
+        "(side 1 at -x, side 2 at +x), or faces under heads and nuts (default: faces)",
     )
-    text = "position of each bolt in the plane of the file [mm] (default: positions of --params, relative to "
-    declare_argument(parser, "--bolts", str, text + "the centroid)", "X,Y", nargs="+")
+    text = (
+        "position of each bolt along rows and across, in the coordinates of the contact result [mm], as in "
+    )
+    text += "-80,0 80,0 (default: positions of --params, relative to the centroid of the contact)"
+    declare_argument(parser, "--bolts", str, text, "X,Y", nargs="+")
     declare_argument(
-        parser, "--hole", str, "diameter of the clearance holes [mm] (default: from --params)", "D"
+        parser,
+        "--hole",
+        str,
+        "for --thickness: diameter of the clearance holes [mm] (default: from --params)",
+        "D",
     )
-    text = "outer diameter of head or washer [mm] (default: from --params, else the hexagon head of the "
+    text = (
+        "for --thickness: outer diameter of head or washer [mm] (default: from --params, else the hexagon "
+        "head of the "
+    )
     declare_argument(parser, "--head", str, text + "largest bolt that passes the hole)", "D")
 
 
@@ -63,38 +73,44 @@ def check_body_arguments(args: argparse.Namespace, parameter_file: ParameterFile
 
 
 def find_bolt_positions(
-    args: argparse.Namespace, parameter_file: ParameterFile, contact_field: ContactField
+    args: argparse.Namespace, parameter_file: ParameterFile, contact_field: ContactPressureField
 ) -> Array | None:
-    """Positions (b, 2) [m] of the bolts in the plane of the field; None if they are not known.
+    """Positions (b, 2) [m] of the b bolts in the plane of the contact; None if they are not known.
 
-    Without `--bolts` the positions are those of the parameter file, relative to the centroid of the field. If
-    one of these positions is outside the field, the file describes another contact, and the result is None.
+    Without `--bolts` the positions are those of the parameter file, relative to the centroid of the contact.
+    If one of these positions is outside the contact, the file describes another one, and the result is None.
 
     Raises ValueError if `--bolts` has too few or too many positions, or one outside the contact.
     """
-    low = np.min(contact_field.position, axis=0) - BOLT_POSITION_TOLERANCE
-    high = np.max(contact_field.position, axis=0) + BOLT_POSITION_TOLERANCE
+    low = np.min(contact_field.node_positions, axis=0) - BOLT_POSITION_TOLERANCE
+    high = np.max(contact_field.node_positions, axis=0) + BOLT_POSITION_TOLERANCE
     if not args.bolts:
-        positions = PlaneLayout.from_joint(parameter_file.values).bolt_positions + contact_field.centroid
+        positions = (
+            PlaneLayout.from_joint_parameters(parameter_file.values).bolt_positions
+            + contact_field.contact_centroid
+        )
         inside = np.all((positions > low) & (positions < high))
         return positions if len(positions) == parameter_file.values.n_bolts and inside else None
     stated = np.array(
         [
-            parse_numbers("bolts", text, "mm", "m", separator=",", number_count=2, lower_bound=None)
+            parse_numbers(
+                "bolts", text, "mm", "m", number_separator=",", expected_number_count=2, lower_bound=None
+            )
             for text in args.bolts
         ]
     )
     if len(stated) != parameter_file.values.n_bolts:
         raise ValueError(
-            f"--bolts has {len(stated)} positions, expected {parameter_file.values.n_bolts:g}: n_bolts"
+            f"--bolts has {len(stated)} positions, expected {parameter_file.values.n_bolts:g}: n_bolts of "
+            "--params"
         )
     for i, place in enumerate(stated):
         if not np.all((place > low) & (place < high)):
             x, y = 1e3 * place
             (x1, y1), (x2, y2) = 1e3 * low, 1e3 * high
             raise ValueError(
-                f"--bolts: bolt {i + 1} at ({x:g}, {y:g}) mm is outside the contact, ({x1:.4g}, {y1:.4g}) to "
-                f"({x2:.4g}, {y2:.4g}) mm"
+                f"--bolts: bolt {i + 1} at ({x:g}, {y:g}) mm is outside the contact, which reaches from "
+                f"({x1:.4g}, {y1:.4g}) to ({x2:.4g}, {y2:.4g}) mm"
             )
     return stated
 
@@ -102,14 +118,14 @@ def find_bolt_positions(
 def build_assembly(
     args: argparse.Namespace,
     parameter_file: ParameterFile,
-    contact_field: ContactField,
+    contact_field: ContactPressureField,
     bolt_positions: Array | None,
 ) -> tuple["Assembly", list[str]]:
     """Build two plates with bolts whose contact area is the area of a pressure field.
 
     Returns the assembly and notes about its shape.
 
-    bolt_positions : (b, 2) [m] in the plane of the pressure field
+    bolt_positions : (b, 2) [m] of the b bolts in the plane of the pressure field
 
     Raises ValueError if positions or sizes of the bolts are missing, if heads overlap or extend beyond the
     plates, or if the plates are too thin.
@@ -120,13 +136,13 @@ def build_assembly(
         raise ValueError("--thickness needs the positions of the bolts; state --bolts X,Y for each")
     hole, head = _find_hole_and_head_diameters(args, parameter_file)
     thick = [parse_number("thickness", text, "mm", "m") for text in args.thickness]
-    low, high = np.min(contact_field.position, axis=0), np.max(contact_field.position, axis=0)
-    (length, width), area = high - low, float(np.sum(contact_field.area))
+    low, high = np.min(contact_field.node_positions, axis=0), np.max(contact_field.node_positions, axis=0)
+    (length, width), area = high - low, float(np.sum(contact_field.nodal_area))
     # a node in the middle of its area lies half an area's width inside the edge: enlarge to the true area
     missing_area = area + len(bolt_positions) * 0.25 * np.pi * hole**2 - length * width
     half = 0.5 * (length + width)
     extension = np.sqrt(max(half**2 + missing_area, 0.0)) - half
-    extension = float(np.clip(extension, 0.0, np.sqrt(contact_field.area.max())))
+    extension = float(np.clip(extension, 0.0, np.sqrt(contact_field.nodal_area.max())))
     sides = [
         Plate(
             length=float(length + extension),
@@ -149,13 +165,13 @@ def build_assembly(
         f"{1e3 * sides[0].width:.4g} mm, heads {1e3 * head:.4g} mm over holes of {1e3 * hole:.4g} mm"
     ]
     centroid = -0.25 * np.pi * hole**2 * places.sum(axis=0) / plates.contact_area
-    offset = np.hypot(*(contact_field.centroid - 0.5 * (low + high) - centroid)) / max(length, width)
+    offset = np.hypot(*(contact_field.contact_centroid - 0.5 * (low + high) - centroid)) / max(length, width)
     if (
         share := area / plates.contact_area
     ) < MIN_CONTACT_OVER_PLATE_AREA or offset > MAX_CENTROID_OFFSET_OVER_PLATE_SIZE:
         notes.append(
-            f"the contact covers {share:.0%} of that rectangle, its centroid is off by {offset:.1%} of the "
-            "plate size: plates of another outline have another stiffness"
+            f"the contact covers {share:.0%} of the rectangle around it, and its centroid is {offset:.1%} of "
+            "the plate size off the middle: if the plates are not rectangular, their stiffness is wrong"
         )
     return plates, notes
 
@@ -164,13 +180,18 @@ def _find_hole_and_head_diameters(
     args: argparse.Namespace, parameter_file: ParameterFile
 ) -> tuple[float, float]:
     """Diameters [m] of clearance hole and head. Raises ValueError if one of them is not known."""
-    layout = PlaneLayout.from_joint(parameter_file.values)
+    layout = PlaneLayout.from_joint_parameters(parameter_file.values)
     hole = parse_number("hole", args.hole, "mm", "m") if args.hole else layout.hole_diameter
     if not hole > 0.0:
-        raise ValueError("--thickness needs the holes of the bolts; state --hole")
+        raise ValueError("--thickness needs the diameter of the clearance holes; state --hole D [mm]")
     if args.head:
         return hole, parse_number("head", args.head, "mm", "m")
     fitting = [thread for thread in read_threads().values() if thread.nominal_diameter < hole]
     if layout.head_diameter <= 0.0 and not fitting:
-        raise ValueError(f"no bolt of the tables fits a hole of {1e3 * hole:g} mm; state --head")
-    return hole, layout.head_diameter or max(fitting, key=lambda thread: thread.nominal_diameter).hexagon
+        raise ValueError(
+            f"no bolt of jointfmu new bolts fits a hole of {1e3 * hole:g} mm; state --head D, the diameter "
+            "of head or washer [mm]"
+        )
+    return hole, layout.head_diameter or max(
+        fitting, key=lambda thread: thread.nominal_diameter
+    ).hexagon_bearing_diameter

@@ -9,9 +9,9 @@ from jointfmu.mechanics.curve import tabulate_approach
 from jointfmu.parameters import ParameterFile, format_parameter_file
 
 from ....common.columns import PRESSURE_FIELD_FILE_KIND
-from ....common.shown import facts_to_json, format_facts
+from ....common.shown import derived_values_to_json, format_derived_values
 from ....fem import require_fem_packages
-from ....joints.bolted_joint.field import insert_elastic_bodies, joint_facts
+from ....joints.bolted_joint.field import compute_complete_joint_results, insert_elastic_bodies
 from ...command import CommandResult, SubParsers, declare_argument, declare_command
 from ...outputs import declare_output
 from . import (
@@ -27,36 +27,47 @@ if TYPE_CHECKING:
     from ....fem.convergence import MeshResult
 
 
-MAX_MESHES = 5
+MAX_CONVERGENCE_STUDY_MESHES = 5
 """Largest number of meshes for `--refine` [1]."""
-MIN_REFINEMENT = 0.3
+MIN_MESH_REFINEMENT = 0.3
 """Smallest refinement factor of the mesh [1], as in `--refine`, at which it still resolves a hole."""
 
 
 def add_command(command_parsers: SubParsers) -> None:
     """Declare the command `jointfmu footprint compute` with its options."""
     text = "compute the contact pressure of a bolted joint by finite elements"
-    sub = declare_command(command_parsers, "compute", run, text)
+    sub = declare_command(command_parsers, "compute", _run_compute, text)
     declare_assembly_arguments(sub)
-    declare_argument(sub, "--moment", float, "bending moment about x [N.m] (default: 0)", "M")
+    declare_argument(sub, "--moment", float, "bending moment on the joint about x [N.m] (default: 0)", "M")
     declare_output(
-        sub, "--out", PARAMETER_FILE, "write the parameter file of the joint with this field (TOML)"
+        sub, "--out", PARAMETER_FILE, "write a parameter file of the joint with the computed pressure (TOML)"
     )
     sub.add_argument(
         "--attached",
         choices=("faces", "edge", "heads"),
         help="write the complete joint (sides = elastic) between these surfaces of the bodies: outer faces, "
-        "edges (side 1 at -x, side 2 at +x), or seats of the heads (default: write the interface only)",
+        "edges (side 1 at -x, side 2 at +x), or faces under heads and nuts (default: write the interface "
+        "only)",
     )
-    declare_output(sub, "--field", PRESSURE_FIELD_FILE_KIND, "write the pressure field (.csv, .vtu)")
-    declare_output(sub, "--plot", PICTURE_FILE, "draw the pressure (.png, .svg)")
+    declare_output(
+        sub, "--field", PRESSURE_FIELD_FILE_KIND, "write the contact pressure at the nodes (.csv, .vtu)"
+    )
+    declare_output(sub, "--plot", PICTURE_FILE, "draw the contact pressure (.png, .svg)")
     declare_argument(
-        sub, "--refine", int, f"number of meshes of a convergence study, 1 to {MAX_MESHES}", default=1
+        sub,
+        "--refine",
+        int,
+        "number of meshes, each finer than the last, for a convergence study, 1 to "
+        f"{MAX_CONVERGENCE_STUDY_MESHES}",
+        default=1,
     )
-    declare_argument(sub, "--refinement", float, "factor that divides the element sizes", "R", default=1.0)
+    text = (
+        f"factor by which all elements are smaller, {MIN_MESH_REFINEMENT:g} to 4; below 1: coarser and faster"
+    )
+    declare_argument(sub, "--refinement", float, text, "R", default=1.0)
 
 
-def run(args: argparse.Namespace) -> CommandResult:
+def _run_compute(args: argparse.Namespace) -> CommandResult:
     """Compute the contact pressure of an assembly by finite elements, print it and write the files."""
     with require_fem_packages("the finite-element analysis"):
         from ....fem import convergence, results
@@ -71,70 +82,78 @@ def run(args: argparse.Namespace) -> CommandResult:
         check_bolt_stiffness(f"--attached {args.attached}", file)
         check_thickness(assembly)
     if args.field:
-        results.check_field_path(args.field)
+        results.check_pressure_field_path(args.field)
     file = replace_assembly_parameters(file, assembly, include_bolts=args.out is not None)
     levels = convergence.refinement_series(args.refine, args.refinement)
     with require_fem_packages("the finite-element analysis"):
         curve = tabulate_approach(file.values)
         rows, solution = convergence.run_mesh_study(assembly, curve, args.preload, moment, levels)
-    result = _add_computed_field(args, file, solution) if args.out else file
-    whole = joint_facts(result, tightening_force(args, result)) if args.attached else {}
+    result = _insert_pressure_field(args, file, solution) if args.out else file
+    whole = compute_complete_joint_results(result, tightening_force(args, result)) if args.attached else {}
     written = _write_outputs(args, result, solution)
-    facts = _collect_results(solution, moment, args.preload)
+    facts = _results_to_json(solution, moment, args.preload)
     judgement = judge_stiffness_and_preload(
         file, assembly, args.preload, facts["p_mean"], solution.peak_pressure
     )
-    judgement = judgement.with_warnings(
-        check_bolt_symmetry(solution.contact_field, assembly.bolts.positions, moment != 0.0)
+    judgement = judgement.prepend_warnings(
+        check_bolt_symmetry(solution.contact_field, assembly.bolts.bolt_positions, moment != 0.0)
     )
     document = facts | {"meshes": [_mesh_result_to_json(row) for row in rows], "written": written}
-    document |= {"whole": facts_to_json(whole)} if whole else {}
-    lines = [*_format_results(facts), *_format_convergence(rows), *format_facts(whole)]
+    document |= {"whole": derived_values_to_json(whole)} if whole else {}
+    lines = [*_format_results(facts), *_format_convergence(rows), *format_derived_values(whole)]
     return CommandResult(
-        json_document=document, lines=lines, stiffness_judgement=judgement, written_files=written
+        json_document=document, output_lines=lines, stiffness_judgement=judgement, written_files=written
     )
 
 
 def _check_arguments(args: argparse.Namespace) -> None:
     """Raise ValueError before the work starts if an option is out of range or `--out` is missing."""
-    if not 1 <= args.refine <= MAX_MESHES:
-        raise ValueError(f"--refine = {args.refine} is outside [1, {MAX_MESHES}]: number of meshes")
-    if not MIN_REFINEMENT <= args.refinement <= 4.0:
-        raise ValueError(f"--refinement = {args.refinement:g} is outside [{MIN_REFINEMENT:g}, 4]")
+    if not 1 <= args.refine <= MAX_CONVERGENCE_STUDY_MESHES:
+        raise ValueError(
+            f"--refine = {args.refine} is outside [1, {MAX_CONVERGENCE_STUDY_MESHES}]: number of meshes"
+        )
+    if not MIN_MESH_REFINEMENT <= args.refinement <= 4.0:
+        raise ValueError(
+            f"--refinement = {args.refinement:g} is outside [{MIN_MESH_REFINEMENT:g}, 4]: factor that "
+            "divides the element sizes"
+        )
     if args.attached and not args.out:
         raise ValueError(f"--attached {args.attached} needs --out, the file for the complete joint")
 
 
 def _write_outputs(
-    args: argparse.Namespace, parameter_file: ParameterFile, solution: "JointSolution"
+    args: argparse.Namespace, parameter_file: ParameterFile, joint_solution: "JointSolution"
 ) -> list[str]:
-    """Write the files of `--out`, `--field` and `--plot`; returns their paths."""
+    """Write the joint (`--out`), pressure field (`--field`) and picture (`--plot`); returns their paths."""
     from ....fem import results
 
     if args.out:
         write_parameter_text(args.out, format_parameter_file(parameter_file))
     if args.field:
-        results.write_field(solution, args.field)
+        results.write_pressure_field(joint_solution, args.field)
     if args.plot:
-        results.draw_pressure(solution, args.plot)
+        results.draw_contact_pressure(joint_solution, args.plot)
     return [str(path) for path in (args.out, args.field, args.plot) if path]
 
 
-def _add_computed_field(
-    args: argparse.Namespace, parameter_file: ParameterFile, solution: "JointSolution"
+def _insert_pressure_field(
+    args: argparse.Namespace, parameter_file: ParameterFile, joint_solution: "JointSolution"
 ) -> ParameterFile:
     """Return the joint with the computed pressure field, and with elastic bodies if `--attached` is set.
 
-    The field holds for the preload that remains after embedding. It contains the change of pressure under a
-    moment.
+    The pressures are those at the preload that remains after embedding, and those that a moment adds.
     """
-    from ....fem.bolted_contact import insert_contact_field
+    from ....fem.bolted_contact import insert_contact_pressure
 
-    interface, shape = insert_contact_field(parameter_file, solution, args.preload, args.moment or 0.0)
+    interface, shape = insert_contact_pressure(
+        parameter_file, joint_solution, args.preload, args.moment or 0.0
+    )
     if not args.attached:
         return interface
     preload = tightening_force(args, interface)
-    return insert_elastic_bodies(interface, solution.bolted_contact.assembly, preload, args.attached, shape)
+    return insert_elastic_bodies(
+        interface, joint_solution.bolted_contact.assembly, preload, args.attached, shape
+    )
 
 
 def tightening_force(args: argparse.Namespace, parameter_file: ParameterFile) -> float:
@@ -142,42 +161,44 @@ def tightening_force(args: argparse.Namespace, parameter_file: ParameterFile) ->
     return float(args.preload + parameter_file.values.embedding)
 
 
-def _collect_results(solution: "JointSolution", moment: float, preload: float) -> dict[str, Any]:
+def _results_to_json(
+    joint_solution: "JointSolution", bending_moment: float, preload: float
+) -> dict[str, Any]:
     """Collect the results of the computed contact pressure in a JSON object."""
-    field = solution.contact_field
-    places, between = solution.pressure_between_bolts
+    field = joint_solution.contact_field
+    places, between = joint_solution.pressure_between_bolts
     return {
-        "assembly": solution.bolted_contact.assembly.name,
+        "assembly": joint_solution.bolted_contact.assembly.name,
         "preload": preload,
-        "moment": moment,
-        "area": float(field.area.sum()),
-        "force": field.force,
-        "p_mean": field.force / float(field.area.sum()),
-        "p_max": solution.peak_pressure,
+        "moment": bending_moment,
+        "area": float(field.nodal_area.sum()),
+        "force": field.normal_force,
+        "p_mean": field.normal_force / float(field.nodal_area.sum()),
+        "p_max": joint_solution.peak_pressure,
         "between": [
             {"x": x, "y": y, "p": p} for (x, y), p in zip(places.tolist(), between.tolist(), strict=True)
         ],
-        "open_share": float(field.area[field.pressure <= 0.0].sum() / field.area.sum()),
-        **solution.stiffness,
+        "open_share": float(field.nodal_area[field.nodal_pressure <= 0.0].sum() / field.nodal_area.sum()),
+        **joint_solution.interface_stiffness,
     }
 
 
-def _format_results(result_values: dict[str, Any]) -> Iterator[str]:
+def _format_results(json_document: dict[str, Any]) -> Iterator[str]:
     """Format the results of the computed contact pressure as lines of text."""
     yield (
-        f"{result_values['assembly']}: {result_values['preload']:g} N per bolt, moment "
-        f"{result_values['moment']:g} N.m"
+        f"{json_document['assembly']}: {json_document['preload']:g} N per bolt, moment "
+        f"{json_document['moment']:g} N.m"
     )
-    yield f"contact   {result_values['area'] * 1e4:.2f} cm2, {100 * result_values['open_share']:.3g} % open"
-    yield f"force     {result_values['force']:.6g} N"
+    yield f"contact   {json_document['area'] * 1e4:.2f} cm2, {100 * json_document['open_share']:.3g} % open"
+    yield f"force     {json_document['force']:.6g} N"
     yield (
-        f"pressure  mean {result_values['p_mean'] / 1e6:.3g} MPa, peak {result_values['p_max'] / 1e6:.4g} MPa"
+        f"pressure  mean {json_document['p_mean'] / 1e6:.3g} MPa, peak {json_document['p_max'] / 1e6:.4g} MPa"
     )
-    for middle in result_values["between"]:
+    for middle in json_document["between"]:
         yield f"          between bolts at ({middle['x']:g}, {middle['y']:g}) m: {middle['p'] / 1e6:.3g} MPa"
     yield (
-        f"interface K_N {result_values['K_N']:.5g} N/m, K_rx {result_values['K_rx']:.5g}, K_ry "
-        f"{result_values['K_ry']:.5g} N.m/rad"
+        f"interface K_N {json_document['K_N']:.5g} N/m, K_rx {json_document['K_rx']:.5g}, K_ry "
+        f"{json_document['K_ry']:.5g} N.m/rad"
     )
 
 
@@ -192,7 +213,7 @@ def _mesh_result_to_json(mesh_result: "MeshResult") -> dict[str, object]:
 
 
 def _format_convergence(mesh_results: list["MeshResult"]) -> Iterator[str]:
-    """Format the convergence study: results of each mesh, relative changes, observed order."""
+    """Format the mesh convergence study: results of each mesh, relative changes, observed order."""
     if len(mesh_results) < 2:
         return
     from ....fem.convergence import RESULT_UNITS, observed_orders, relative_changes

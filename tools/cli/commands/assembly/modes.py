@@ -21,22 +21,23 @@ from . import (
 if TYPE_CHECKING:
     from ....fem.modes import NaturalModes
 
-MAX_MODES = 40
+MAX_MODE_COUNT = 40
 """Largest number of natural frequencies that the command computes [1]."""
 
 
 def add_modes_command(command_parsers: SubParsers) -> None:
     """Declare the command `jointfmu modes` with its options."""
     text = "compute natural frequencies of a free bolted assembly with contact stiffness"
-    sub = declare_command(command_parsers, "modes", run, text)
+    sub = declare_command(command_parsers, "modes", _run_modes, text)
     declare_assembly_arguments(sub)
-    declare_argument(sub, "--moment", float, "bending moment about x [N.m]", "M", default=0.0)
-    declare_argument(sub, "--count", int, f"number of modes, 1 to {MAX_MODES}", default=6)
-    declare_argument(sub, "--refinement", float, "factor that divides all element sizes", "R", default=1.0)
-    declare_output(sub, "--vtu", MESH_FILE, "write the mode shapes (.vtu)")
+    declare_argument(sub, "--moment", float, "bending moment on the joint about x [N.m]", "M", default=0.0)
+    declare_argument(sub, "--count", int, f"number of elastic modes, 1 to {MAX_MODE_COUNT}", default=6)
+    text = "factor by which all elements are smaller, 0.1 to 4; below 1: coarser and faster"
+    declare_argument(sub, "--refinement", float, text, "R", default=1.0)
+    declare_output(sub, "--vtu", MESH_FILE, "write the mode shapes as a mesh for ParaView (.vtu)")
 
 
-def run(args: argparse.Namespace) -> CommandResult:
+def _run_modes(args: argparse.Namespace) -> CommandResult:
     """Run the command `jointfmu modes`."""
     with require_fem_packages("the finite-element analysis"):
         from ....fem import modes as assembly_modes
@@ -51,11 +52,11 @@ def run(args: argparse.Namespace) -> CommandResult:
     shear = float(file.values.shear_stiffness_ratio())
     with require_fem_packages("the finite-element analysis"):
         contact = BoltedContact.from_assembly(assembly, args.refinement)
-        solution = contact.solve(law, args.preload, args.moment)
-        modes = assembly_modes.preloaded_modes(solution, shear, args.count)
-        even = assembly_modes.uniform_pressure_modes(contact, law, force, shear, args.count)
+        solution = contact.solve_equilibrium(law, args.preload, args.moment)
+        modes = assembly_modes.compute_preloaded_modes(solution, shear, args.count)
+        even = assembly_modes.compute_uniform_pressure_modes(contact, law, force, shear, args.count)
     if args.vtu:
-        write_bytes(args.vtu, results.modes_vtu(contact.bodies, modes))
+        write_bytes(args.vtu, results.make_modes_vtu(contact.bodies, modes))
     judgement = judge_stiffness_and_preload(
         file, assembly, args.preload, force / assembly.contact_area, solution.peak_pressure
     )
@@ -65,42 +66,55 @@ def run(args: argparse.Namespace) -> CommandResult:
     )
     document = _modes_to_json(args, assembly.name, modes, even)
     return CommandResult(
-        json_document=document, lines=[head, *_format_modes(modes, even)], stiffness_judgement=judgement
+        json_document=document,
+        output_lines=[head, *_format_modes(modes, even)],
+        stiffness_judgement=judgement,
     )
 
 
 def _check_arguments(args: argparse.Namespace) -> None:
     """Raise ValueError before the work starts if an option of the command is out of range."""
-    if not 1 <= args.count <= MAX_MODES:
-        raise ValueError(f"--count = {args.count} is outside [1, {MAX_MODES}]: number of modes")
+    if not 1 <= args.count <= MAX_MODE_COUNT:
+        raise ValueError(f"--count = {args.count} is outside [1, {MAX_MODE_COUNT}]: number of modes")
     if not 0.1 <= args.refinement <= 4.0:
         raise ValueError(
             f"--refinement = {args.refinement:g} is outside [0.1, 4]: factor that divides the element sizes"
         )
-    if args.vtu and args.vtu.suffix.lower() not in MESH_FILE.endings:
+    if args.vtu and args.vtu.suffix.lower() not in MESH_FILE.file_name_endings:
         raise ValueError(f"{args.vtu}: suffix {args.vtu.suffix!r} is not a mesh, allowed is .vtu")
 
 
 def _modes_to_json(
     args: argparse.Namespace,
     assembly_name: str,
-    modes: "NaturalModes",
-    uniform_pressure_modes: "NaturalModes",
+    natural_modes: "NaturalModes",
+    compute_uniform_pressure_modes: "NaturalModes",
 ) -> dict[str, object]:
     """JSON object of the natural frequencies under the computed and under uniform pressure."""
-    rows = zip(modes.frequency.tolist(), uniform_pressure_modes.frequency.tolist(), strict=True)
+    rows = zip(
+        natural_modes.natural_frequencies.tolist(),
+        compute_uniform_pressure_modes.natural_frequencies.tolist(),
+        strict=True,
+    )
     return {
         "assembly": assembly_name,
         "preload": args.preload,
         "moment": args.moment,
-        "mass": modes.assembly_mass,
+        "mass": natural_modes.assembly_mass,
         "modes": [{"f": f, "f_uniform_pressure": g} for f, g in rows],
         "written": [str(args.vtu)] if args.vtu else [],
     }
 
 
-def _format_modes(modes: "NaturalModes", uniform_pressure_modes: "NaturalModes") -> Iterator[str]:
+def _format_modes(
+    natural_modes: "NaturalModes", compute_uniform_pressure_modes: "NaturalModes"
+) -> Iterator[str]:
     """Format the natural frequencies as lines of text."""
     yield "mode   f [Hz]   with uniform pressure [Hz]"
-    for i, (f, g) in enumerate(zip(modes.frequency, uniform_pressure_modes.frequency, strict=True), 1):
+    for i, (f, g) in enumerate(
+        zip(
+            natural_modes.natural_frequencies, compute_uniform_pressure_modes.natural_frequencies, strict=True
+        ),
+        1,
+    ):
         yield f"{i:4d} {f:8.2f} {g:15.2f}  {100.0 * (g / f - 1.0):+.2f} %"

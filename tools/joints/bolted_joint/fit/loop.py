@@ -31,22 +31,24 @@ from jointfmu.quantity.refusal import InputRefusal
 from jointfmu.quantity.units import unit_sizes
 
 from ....inputs.fitting import hysteresis_fit
-from ....inputs.fitting.branches import Loops
+from ....inputs.fitting.branches import MeasuredLoops
 from ....inputs.fitting.hysteresis import HysteresisLaw
 from ....inputs.fitting.least_squares import Unknown, UnknownExchange
-from ....inputs.fitting.measurement import ColumnNames, Measurement, read_measurement
-from ....inputs.fitting.outcome import FitFacts, FitResult, fitted_parameters, make_unknowns
+from ....inputs.fitting.measurement import Measurement, MeasurementColumns, read_measurement
+from ....inputs.fitting.outcome import DerivedFitValues, FitResult, build_fitted_file, make_fit_unknowns
 from .preload import (
-    COMPLETE_JOINT_ENGINES,
+    BOLTED_JOINT_FOR_FITS,
     SERIES_STIFFNESS_NAME,
-    joint_stiffness,
+    compute_joint_stiffness,
     merged_normalised_pressure,
 )
-from .preload import FITTED_PARAMETERS as INTERFACE
+from .preload import DEFAULT_FITTED_PARAMETERS as INTERFACE
 
-COLUMN_NAMES = ColumnNames("force", "displacement", unit_sizes("N", "kN"), unit_sizes("m", "mm", "um", "nm"))
+LOOP_COLUMN_NAMES = MeasurementColumns(
+    "force", "displacement", unit_sizes("N", "kN"), unit_sizes("m", "mm", "um", "nm")
+)
 """Columns of force and displacement in a file of loops, with their units."""
-FITTED_PARAMETERS = {law: ("mu", *names) for law, names in INTERFACE.items()}
+DEFAULT_FITTED_PARAMETERS = {law: ("mu", *names) for law, names in INTERFACE.items()}
 """{law: parameters to fit}: friction, stiffness level and, if the law has one, exponent. The exponent is not
 fitted to vibrations, in which exponent and level have nearly the same effect."""
 START_VALUES: Mapping[str, Sequence[float]] = {"mu": (0.05, 0.15, 0.4), "surface.D": (1.2, 1.45)}
@@ -54,48 +56,51 @@ START_VALUES: Mapping[str, Sequence[float]] = {"mu": (0.05, 0.15, 0.4), "surface
 value of the level follows from the data."""
 UNKNOWNS_OUTSIDE_JOINT = (hysteresis_fit.DAMPING_RATIO_NAME, SERIES_STIFFNESS_NAME)
 """Unknowns that are not parameters of the joint."""
-SERIES_STIFFNESS_STARTS_OVER_REST_STIFFNESS = (2.0, 1.1, 1.5, 5.0)
+START_SERIES_STIFFNESSES_OVER_JOINT_STIFFNESS = (2.0, 1.1, 1.5, 5.0)
 """Start values of the series stiffness over the measured stiffness at rest [1]."""
 TABLE_END_OVER_LOOP_AMPLITUDE = 1.05
 """Largest displacement of the tabulated law over the amplitude of the loops [1]."""
-PLAUSIBLE_FRICTION = (0.005, 3.0)
+PLAUSIBLE_FRICTION_COEFFICIENT_RANGE = (0.005, 3.0)
 """Friction coefficients [1] that are plausible for loops in gross slip."""
-_FIRST_LOADING_STEPS = 48
+_FIRST_LOADING_STEP_COUNT = 48
 """Number of steps of the table of first loading [1], finer near rest."""
-_ELASTIC_FIRST_LOADING_STEPS, _GROSS_SLIP_OVER_ELASTIC_DISPLACEMENT = 24, 4.0
+_ELASTIC_FIRST_LOADING_STEP_COUNT, _GROSS_SLIP_OVER_ELASTIC_DISPLACEMENT = 24, 4.0
 """Elastic sides: steps of the table, and displacement of gross slip over friction_limit/K_xx [1]."""
 
 
 def make_shear_loop_law(
-    joint: AnyBoltedJoint,
+    joint_parameters: AnyBoltedJoint,
     preload: float,
     series_stiffness: float | None = None,
     max_displacement: float = np.inf,
-) -> tuple[HysteresisLaw, FitFacts]:
-    """Make the hysteresis law in shear at a preload [N] of each bolt, and facts about the joint.
+) -> tuple[HysteresisLaw, DerivedFitValues]:
+    """Make the hysteresis law of the joint in shear, at a preload [N] of each bolt.
 
     series_stiffness : [N/m] of a structure in series; None: rigid. The displacement is the sum for joint
-                       and structure, and Masing's rule holds for both together. The facts describe the
-                       joint without the structure.
-    max_displacement : [m] end of the table for elastic sides
+                       and structure, and Masing's rule holds for both together.
+    max_displacement : [m] largest displacement for which the first loading of elastic sides is computed
 
-    Raises ValueError if nothing is in contact, if a pressure is outside the law, or if there is no
-    equilibrium with elastic sides.
+    Also returns, for the joint without the structure: friction limit [N], stiffness at rest [N/m], and the
+    exponent [1] of the load with which the stiffness falls as the joint opens.
+    Raises ValueError if nothing is in contact, if a pressure exceeds the range of the contact law, or if
+    there is no equilibrium with elastic sides.
     """
-    curve, approach, weight = _preloaded_interface(joint, preload)
-    kappa, mu = float(joint.shear_stiffness_ratio()), joint.mu
+    curve, approach, weight = _preloaded_interface(joint_parameters, preload)
+    kappa, mu = float(joint_parameters.shear_stiffness_ratio()), joint_parameters.mu
     separation = (float(np.max(approach)) - curve.displacement[0]) * np.linspace(
-        0.0, 1.0, _FIRST_LOADING_STEPS + 1
+        0.0, 1.0, _FIRST_LOADING_STEP_COUNT + 1
     ) ** 2
     load, stiffness, d2_load = (
         value @ weight for value in curve.derivatives(approach - separation[:, None], 2)
     )
     motion, force, tangent_stiffness = separation * mu / kappa, mu * (load[0] - load), kappa * stiffness
     limit = float(mu * load[0])
-    if joint.has_elastic_members:
-        gross_slip = _GROSS_SLIP_OVER_ELASTIC_DISPLACEMENT * limit / shear_stiffness_at_rest(joint, preload)
+    if joint_parameters.has_elastic_members:
+        gross_slip = (
+            _GROSS_SLIP_OVER_ELASTIC_DISPLACEMENT * limit / shear_stiffness_at_rest(joint_parameters, preload)
+        )
         motion, force, tangent_stiffness = _first_loading_of_elastic_sides(
-            joint, preload, gross_slip, float(motion[-1]), max_displacement
+            joint_parameters, preload, gross_slip, float(motion[-1]), max_displacement
         )
     compliance = 0.0 if series_stiffness is None else 1.0 / series_stiffness
     displacement = motion + compliance * force
@@ -105,14 +110,14 @@ def make_shear_loop_law(
     energy = table.antiderivative()
     end, max_force = float(displacement[-1]), float(force[-1])
 
-    def friction_force(motion: Array) -> Array:
+    def friction_force(displacement: Array) -> Array:
         """Shear force [N] in first loading at displacements [m]."""
-        return np.where(motion < end, table(np.minimum(motion, end)), max_force)
+        return np.where(displacement < end, table(np.minimum(displacement, end)), max_force)
 
-    def friction_work(motion: Array) -> Array:
+    def friction_work(displacement: Array) -> Array:
         """Work [J] of the shear force in first loading up to displacements [m]."""
-        inside = np.minimum(motion, end)
-        return np.asarray(energy(inside) + max_force * (motion - inside))
+        inside = np.minimum(displacement, end)
+        return np.asarray(energy(inside) + max_force * (displacement - inside))
 
     return HysteresisLaw(friction_force, friction_work), {
         "friction_limit": (limit, "N", "mu times the normal force"),
@@ -127,87 +132,113 @@ def make_shear_loop_law(
 
 @lru_cache(maxsize=8)
 def _first_loading_of_elastic_sides(
-    joint: AnyBoltedJoint,
+    joint_parameters: AnyBoltedJoint,
     preload: float,
     linear_displacement_term: float,
     quadratic_displacement_term: float,
     max_displacement: float,
 ) -> tuple[Array, Array, Array]:
-    """First loading along x with elastic sides: displacement (n) [m], force (n) [N], tangent stiffness [N/m].
+    """First loading in shear with elastic sides: n displacements [m], forces [N], tangent stiffnesses [N/m].
 
     The displacements are s = a t + b t^2, with t from 0 to 1 in equal steps. If a + b exceeds
     `max_displacement` [m], all displacements are scaled down to end there.
 
     linear_displacement_term, quadratic_displacement_term : a [m], b [m]
     """
-    fraction = np.linspace(0.0, 1.0, _ELASTIC_FIRST_LOADING_STEPS + 1)
+    fraction = np.linspace(0.0, 1.0, _ELASTIC_FIRST_LOADING_STEP_COUNT + 1)
     motion = (linear_displacement_term * fraction + quadratic_displacement_term * fraction**2) * min(
         1.0, max_displacement / (linear_displacement_term + quadratic_displacement_term)
     )
-    force, stiffness = _follow_path(joint, preload, motion)
+    force, stiffness = _compute_shear_force_along_path(joint_parameters, preload, motion)
     curve = CubicSpline(motion, force, bc_type=((1, stiffness[0]), (1, stiffness[-1])))
     return motion, force, curve(motion, 1)
 
 
-def _follow_path(joint: AnyBoltedJoint, preload: float, displacement: Array) -> tuple[Array, Array]:
-    """Force (n) [N] and K_xx (n) [N/m] along displacements x (n) [m], from the virgin state."""
+def _compute_shear_force_along_path(
+    joint_parameters: AnyBoltedJoint, preload: float, displacement: Array
+) -> tuple[Array, Array]:
+    """Compute shear force (n) [N] and K_xx (n) [N/m] along displacements x (n) [m], from the virgin state."""
     inputs: dict[str, ArrayLike] = {"preload": preload, "s_rel_x": displacement}
-    columns = COMPLETE_JOINT_ENGINES.with_parameters(joint).follow(inputs).columns
+    columns = (
+        BOLTED_JOINT_FOR_FITS.open_with_parameters(joint_parameters).evaluate_path(inputs).variable_columns
+    )
     return -columns["f_x"], columns["K_xx"]
 
 
-def _masing_deviation(joint: AnyBoltedJoint, preload: float, loops: Loops, law: HysteresisLaw) -> Array:
-    """Deviation (n) [N] from Masing's rule of the forces of a joint with elastic sides, along measured loops.
+def _compute_masing_deviation(
+    joint_parameters: AnyBoltedJoint,
+    preload: float,
+    measured_loops: MeasuredLoops,
+    hysteresis_law: HysteresisLaw,
+) -> Array:
+    """Deviation (n) [N] of the force from Masing's rule, at the n samples of loops, for elastic sides.
 
-    Bending of the bodies changes the slip direction of the patches, so that unloading does not mirror
-    loading. After gross slip the deviation is about half a percent of the friction force.
+    Bending of the bodies changes the slip direction of parts of the contact, so that unloading does not
+    mirror loading. After gross slip the deviation is about half a percent of the friction force.
     """
-    deviation = np.empty_like(loops.force)
-    for run in range(loops.run_index[-1] + 1):
-        branches = np.unique(loops.branch_index[loops.run_index == run])
-        middle = 0.5 * (np.max(loops.start_motion[branches]) + np.min(loops.start_motion[branches]))
-        paths = [np.linspace(middle, loops.start_motion[branches[0]], _ELASTIC_FIRST_LOADING_STEPS + 1)]
+    deviation = np.empty_like(measured_loops.joint_force)
+    for run in range(measured_loops.run_of_sample[-1] + 1):
+        branches = np.unique(measured_loops.branch_of_sample[measured_loops.run_of_sample == run])
+        middle = 0.5 * (
+            np.max(measured_loops.branch_start_motion[branches])
+            + np.min(measured_loops.branch_start_motion[branches])
+        )
+        paths = [
+            np.linspace(
+                middle, measured_loops.branch_start_motion[branches[0]], _ELASTIC_FIRST_LOADING_STEP_COUNT + 1
+            )
+        ]
         for k in branches:
-            start, motion = loops.start_motion[k], loops.motion[loops.branch_index == k]
+            start, motion = (
+                measured_loops.branch_start_motion[k],
+                measured_loops.joint_motion[measured_loops.branch_of_sample == k],
+            )
             end = motion[np.argmax(np.abs(motion - start))]
-            paths.append(np.linspace(start, end, _ELASTIC_FIRST_LOADING_STEPS + 1))
-        run_force, _ = _follow_path(joint, preload, np.concatenate(paths) - middle)
+            paths.append(np.linspace(start, end, _ELASTIC_FIRST_LOADING_STEP_COUNT + 1))
+        run_force, _ = _compute_shear_force_along_path(
+            joint_parameters, preload, np.concatenate(paths) - middle
+        )
         for k, path, force in zip(branches, paths[1:], np.split(run_force, len(paths))[1:], strict=True):
-            start, motion = loops.start_motion[k], loops.motion[loops.branch_index == k]
-            difference = force - force[0] - law.force_change(path, np.full_like(path, start))
+            start, motion = (
+                measured_loops.branch_start_motion[k],
+                measured_loops.joint_motion[measured_loops.branch_of_sample == k],
+            )
+            difference = force - force[0] - hysteresis_law.force_change(path, np.full_like(path, start))
             distance = np.abs(motion - start)
-            deviation[loops.branch_index == k] = np.interp(distance, np.abs(path - start), difference)
+            deviation[measured_loops.branch_of_sample == k] = np.interp(
+                distance, np.abs(path - start), difference
+            )
     return deviation
 
 
-def shear_stiffness_at_rest(joint: AnyBoltedJoint, preload: float) -> float:
-    """Shear stiffness K_xx [N/m] at rest, at a preload [N] of each bolt.
+def shear_stiffness_at_rest(joint_parameters: AnyBoltedJoint, preload: float) -> float:
+    """Shear stiffness K_xx [N/m] of the joint without slip, at a preload [N] of each bolt.
 
-    Raises ValueError as `_preloaded_interface`.
+    Raises ValueError if nothing is in contact or a pressure exceeds the range of the contact law.
     """
-    curve, approach, weight = _preloaded_interface(joint, preload)
-    if joint.has_elastic_members:
-        return float(joint_stiffness(joint, np.array([preload]), "tangential")[0])
-    return float(joint.shear_stiffness_ratio() * (curve.derivatives(approach, 1)[1] @ weight))
+    curve, approach, weight = _preloaded_interface(joint_parameters, preload)
+    if joint_parameters.has_elastic_members:
+        return float(compute_joint_stiffness(joint_parameters, np.array([preload]), "tangential")[0])
+    return float(joint_parameters.shear_stiffness_ratio() * (curve.derivatives(approach, 1)[1] @ weight))
 
 
-def _preloaded_interface(joint: AnyBoltedJoint, preload: float) -> tuple[Curve, Array, Array]:
-    """Preloaded interface: curve of the law, approaches (n) [m] and areas (n) [m2] of the nodes.
+def _preloaded_interface(joint_parameters: AnyBoltedJoint, preload: float) -> tuple[Curve, Array, Array]:
+    """Preloaded interface: pressure-approach curve, approaches (n) [m] and areas (n) [m2] of its n nodes.
 
-    Raises ValueError if nothing is in contact or a pressure is outside the law.
+    Raises ValueError if nothing is in contact or a pressure exceeds the range of the contact law.
     """
-    shape, curve = merged_normalised_pressure(joint.pattern), tabulate_approach(joint)
-    pressure = preload_pressure(joint, shape, preload, 0.0)
+    shape, curve = merged_normalised_pressure(joint_parameters.pattern), tabulate_approach(joint_parameters)
+    pressure = preload_pressure(joint_parameters, shape, preload, 0.0)
     if not 0.0 < (max_pressure := float(np.max(pressure))) < curve.end_point[1]:
         raise ValueError(
             f"preload = {preload:g} N per bolt presses with {max_pressure:.3g} Pa, allowed is up to "
-            f"{curve.end_point[1]:.3g} Pa"
+            f"{curve.end_point[1]:.3g} Pa, where the law ends; state the preload of the test"
         )
-    return curve, curve.inverse(pressure), joint.A_0 * shape.area_share
+    return curve, curve.inverse(pressure), joint_parameters.A_0 * shape.area_share
 
 
 def fit(
-    path: str | Path,
+    data_path: str | Path,
     start_parameters: ParameterFile | None = None,
     fitted_names: Sequence[str] | None = None,
     *,
@@ -216,13 +247,13 @@ def fit(
     damping_ratio: float = 0.0,
     series_stiffness: float | None = None,
 ) -> FitResult:
-    """Fit a file of loops, decays, responses, or frequency and damping over the amplitude (COLUMN_NAMES).
+    """Fit a bolted joint to a file of loops, decays, responses, or frequency and damping over the amplitude.
 
     Parameters
     ----------
     start_parameters : parameters to start from; None: the default joint
     fitted_names     : names to fit, also `damping_ratio` and `series_stiffness`; None: those of
-                       FITTED_PARAMETERS
+                       DEFAULT_FITTED_PARAMETERS
     preload          : [N] of each bolt in the test; None: the one in the inputs of `start_parameters`
     modal_mass       : [kg] mass that vibrates on the joint; required unless the file has loops
     damping_ratio    : [1] of the structure alone
@@ -231,14 +262,16 @@ def fit(
     Raises ValueError with a one-line message for a bad file, unit or value, a loop that creates energy, or a
     name that cannot be fitted. Raises RuntimeError if the fit does not converge.
     """
-    data = read_measurement(path, COLUMN_NAMES)
+    data = read_measurement(data_path, LOOP_COLUMN_NAMES)
     file = start_parameters or load_default("bolted_joint")
     force = file.start_value("preload") if preload is None else preload
     if not 0.0 < force < np.inf:
         raise InputRefusal(
             f"preload = {force:g} N is outside (0, inf); state that of each bolt in the test", "preload"
         )
-    names = list(fitted_names or FITTED_PARAMETERS[file.law][: 3 if data.kind == "loops" else 2])
+    names = list(
+        fitted_names or DEFAULT_FITTED_PARAMETERS[file.law][: 3 if data.measurement_kind == "loops" else 2]
+    )
     if series_stiffness is not None and not 0.0 < series_stiffness < np.inf:
         raise InputRefusal(
             f"series stiffness = {series_stiffness:g} N/m is outside (0, inf)", SERIES_STIFFNESS_NAME
@@ -247,7 +280,7 @@ def fit(
     def make_joint(parameter_values: Mapping[str, float]) -> AnyBoltedJoint:
         """Make the joint with values of the fitted parameters."""
         parameters: AnyBoltedJoint = file.with_values(
-            _joint_parameters(parameter_values), "calibration", "fit"
+            _select_joint_parameters(parameter_values), "calibration", "fit"
         ).values
         return parameters
 
@@ -255,9 +288,11 @@ def fit(
         """Series stiffness [N/m]: fitted or stated; None: rigid structure."""
         return parameter_values.get(SERIES_STIFFNESS_NAME, series_stiffness)
 
-    reach = TABLE_END_OVER_LOOP_AMPLITUDE * data.amplitude if data.kind == "loops" else np.inf
+    reach = (
+        TABLE_END_OVER_LOOP_AMPLITUDE * data.largest_amplitude if data.measurement_kind == "loops" else np.inf
+    )
 
-    def make_law(parameter_values: Mapping[str, float]) -> HysteresisLaw:
+    def make_joint_hysteresis_law(parameter_values: Mapping[str, float]) -> HysteresisLaw:
         """Make the hysteresis law in shear of joint and structure, for values of the fitted parameters."""
         set_status_text(
             "tries " + ", ".join(f"{name} = {value:.4g}" for name, value in parameter_values.items())
@@ -266,7 +301,9 @@ def fit(
             make_joint(parameter_values), force, get_series_stiffness(parameter_values), reach
         )[0]
 
-    model = hysteresis_fit.build_model(data, make_law, "modal_mass", modal_mass, damping_ratio)
+    model = hysteresis_fit.build_measurement_model(
+        data, make_joint_hysteresis_law, "modal_mass", modal_mass, damping_ratio
+    )
     measured_rest = data.rest_stiffness(modal_mass)
 
     def total_stiffness_at_rest(parameter_values: Mapping[str, float]) -> float:
@@ -278,16 +315,16 @@ def fit(
         )
 
     notes = []
-    if isinstance(data.data, Loops):
-        _check_loops(
-            data, data.data, measured_rest / total_stiffness_at_rest({}), make_joint({}), force, file
+    if isinstance(data.measured_data, MeasuredLoops):
+        _check_measured_loops(
+            data, data.measured_data, measured_rest / total_stiffness_at_rest({}), make_joint({}), force, file
         )
-        if not data.data.is_stiffness_resolved and not fitted_names:
+        if not data.measured_data.is_stiffness_resolved and not fitted_names:
             _, *level_names = names
             names = names[:1]
             notes.append(
-                f"the loops do not determine {', '.join(level_names)}, values of {file.name} are kept: "
-                "all of the interface slips within few samples after each reversal; the stiffness after a "
+                f"the loops do not determine {', '.join(level_names)}, values of {file.name} are kept: all "
+                "of the interface slips within few samples after each reversal; the stiffness after a "
                 f"reversal is at least {measured_rest:.3g} N/m"
             )
     if (
@@ -296,37 +333,46 @@ def fit(
         and series_stiffness <= measured_rest
     ):
         raise InputRefusal(
-            f"series stiffness = {series_stiffness:g} N/m is outside ({measured_rest:.4g}, inf): the data "
-            "show joint and structure together as that stiff at rest",
+            f"series stiffness = {series_stiffness:g} N/m is outside ({measured_rest:.4g}, inf): in the "
+            "data, joint and structure together have this stiffness at rest",
             SERIES_STIFFNESS_NAME,
         )
-    unknown_list = make_unknowns(file, [name for name in names if name not in UNKNOWNS_OUTSIDE_JOINT], {})
+    unknown_list = make_fit_unknowns(file, [name for name in names if name not in UNKNOWNS_OUTSIDE_JOINT], {})
     unknown_list += [hysteresis_fit.UNKNOWN_DAMPING_RATIO] * (hysteresis_fit.DAMPING_RATIO_NAME in names)
     unknown_list += [
         Unknown(
             SERIES_STIFFNESS_NAME,
             "N/m",
-            SERIES_STIFFNESS_STARTS_OVER_REST_STIFFNESS[0] * measured_rest,
+            START_SERIES_STIFFNESSES_OVER_JOINT_STIFFNESS[0] * measured_rest,
             0.0,
             np.inf,
         )
     ] * (SERIES_STIFFNESS_NAME in names)
-    level = _exchange_stiffness_level(file, names, total_stiffness_at_rest)
-    is_vibration_with_level = data.kind != "loops" and set(FITTED_PARAMETERS[file.law][1:]) <= set(names)
+    level = _replace_stiffness_level_by_rest_stiffness(file, names, total_stiffness_at_rest)
+    is_vibration_with_level = data.measurement_kind != "loops" and set(
+        DEFAULT_FITTED_PARAMETERS[file.law][1:]
+    ) <= set(names)
     starts = {
         **START_VALUES,
         SERIES_STIFFNESS_NAME: [
-            times * measured_rest for times in SERIES_STIFFNESS_STARTS_OVER_REST_STIFFNESS[1:]
+            times * measured_rest for times in START_SERIES_STIFFNESSES_OVER_JOINT_STIFFNESS[1:]
         ],
     }
     is_joint_alone = series_stiffness is None and SERIES_STIFFNESS_NAME not in names
-    is_corrected = data.kind == "loops" and file.values.has_elastic_members and is_joint_alone
+    is_corrected = data.measurement_kind == "loops" and file.values.has_elastic_members and is_joint_alone
 
     def subtract_masing_deviation(parameter_values: Mapping[str, float]) -> Measurement:
         """Measured loops minus the deviation of the joint from Masing's rule."""
-        assert isinstance(data.data, Loops)
-        off = _masing_deviation(make_joint(parameter_values), force, data.data, make_law(parameter_values))
-        return replace(data, data=replace(data.data, force=data.data.force - off))
+        assert isinstance(data.measured_data, MeasuredLoops)
+        off = _compute_masing_deviation(
+            make_joint(parameter_values),
+            force,
+            data.measured_data,
+            make_joint_hysteresis_law(parameter_values),
+        )
+        return replace(
+            data, measured_data=replace(data.measured_data, joint_force=data.measured_data.joint_force - off)
+        )
 
     solution, scale, data = hysteresis_fit.fit_measurement(
         data,
@@ -337,86 +383,92 @@ def fit(
         is_vibration_with_level and level is not None,
         subtract_masing_deviation if is_corrected else None,
     )
-    result = fitted_parameters(
+    result = build_fitted_file(
         file,
-        _joint_parameters(solution.values),
+        _select_joint_parameters(solution.values),
         "calibration",
-        data.path.name,
-        f"{data.range_text}, preload {force:g} N",
+        data.measurement_path.name,
+        f"{data.describe_range}, preload {force:g} N",
     )
     law, joint_facts = make_shear_loop_law(
         make_joint(solution.values), force, get_series_stiffness(solution.values), reach
     )
-    slip_ratio = float(law.friction_force(np.array([data.amplitude]))[0]) / joint_facts["friction_limit"][0]
+    slip_ratio = (
+        float(law.friction_force(np.array([data.largest_amplitude]))[0]) / joint_facts["friction_limit"][0]
+    )
     text = "largest friction force of the data over friction_limit"
     facts = joint_facts | {"slip_reached": (slip_ratio, "1", text)}
     return FitResult(
         result,
         solution,
         facts | hysteresis_fit.summarize_fit(data, solution, law, scale),
-        hysteresis_fit.make_plots(data, model, solution.values, scale),
+        hysteresis_fit.make_fit_plots(data, model, solution.values, scale),
         notes=[*notes, *hysteresis_fit.list_misfit_notes(data, solution)],
     )
 
 
-def _check_loops(
-    measurement: Measurement,
-    loops: Loops,
-    stiffness_ratio: float,
-    joint: AnyBoltedJoint,
+def _check_measured_loops(
+    measured_data: Measurement,
+    measured_loops: MeasuredLoops,
+    measured_over_start_stiffness: float,
+    joint_parameters: AnyBoltedJoint,
     preload: float,
     start_file: ParameterFile,
 ) -> None:
-    """Check stiffness after reversals, force at gross slip, and bearing after slip, of measured loops.
+    """Check measured loops: stiffness after reversals, gross-slip force, and no bolt touches its hole.
 
-    stiffness_ratio : measured stiffness over stiffness of the start values [1]
-    joint, preload  : joint with the start values, preload [N] of each bolt
+    measured_over_start_stiffness : measured stiffness over stiffness of the start values [1]
+    joint_parameters, preload     : joint with the start values, preload [N] of each bolt
 
-    Raises ValueError for loops that bear after slip. Raises InputRefusal for a stiffness far from the
-    stiffness of the start values, and for a slip force without a plausible friction coefficient.
+    Raises ValueError for loops whose force rises again after slip. Raises InputRefusal for a stiffness far
+    from the stiffness of the start values, and for a slip force without a plausible friction coefficient.
     """
-    if bearing := loops.find_bearing():
+    if bearing := measured_loops.find_clearance_slip():
         clearance, slip_change = bearing
         raise ValueError(
-            f"{measurement.path}: the force rises again after slip: the joint slips at about "
-            f"{0.5 * slip_change:.3g} N through a clearance of about {1e6 * clearance:.3g} um "
-            "and then bears; "
-            "the fit has friction alone: expected loops that stay within the clearance"
+            f"{measured_data.measurement_path}: the force rises again after slip: the joint slips at about "
+            f"{0.5 * slip_change:.3g} N through a clearance of about {1e6 * clearance:.3g} um and then "
+            "bears; the fit has friction alone: expected loops that stay within the clearance"
         )
-    slip_force = loops.slip_force
+    slip_force = measured_loops.slip_force
     if slip_force is not None:
-        normal_force = float(working_preload(joint, preload)) * joint.n_bolts
-        low, high = PLAUSIBLE_FRICTION
+        normal_force = float(working_preload(joint_parameters, preload)) * joint_parameters.n_bolts
+        low, high = PLAUSIBLE_FRICTION_COEFFICIENT_RANGE
         if not low <= slip_force / normal_force <= high:
             raise InputRefusal(
-                f"{measurement.path}: the force at gross slip is {slip_force:.4g} N, which needs mu = "
-                f"{slip_force / normal_force:.3g} at a normal force of {normal_force:.4g} N, allowed are "
-                f"{low:g} to {high:g}: check the unit of column force, and the preload of each bolt",
+                f"{measured_data.measurement_path}: the force at gross slip is {slip_force:.4g} N, which "
+                f"needs mu = {slip_force / normal_force:.3g} at a normal force of {normal_force:.4g} N, "
+                f"allowed are {low:g} to {high:g}: check the unit of column force, and the preload of each "
+                "bolt",
                 "preload",
             )
-    if loops.is_stiffness_resolved or stiffness_ratio > 1.0:
-        COLUMN_NAMES.check_stiffness_ratio(
-            measurement.path, stiffness_ratio, measurement.stated_units, start_file, slip_force is not None
+    if measured_loops.is_stiffness_resolved or measured_over_start_stiffness > 1.0:
+        LOOP_COLUMN_NAMES.check_stiffness_ratio(
+            measured_data.measurement_path,
+            measured_over_start_stiffness,
+            measured_data.stated_units,
+            start_file,
+            slip_force is not None,
         )
 
 
-def _exchange_stiffness_level(
+def _replace_stiffness_level_by_rest_stiffness(
     parameter_file: ParameterFile,
     fitted_names: Sequence[str],
     compute_stiffness_at_rest: Callable[[Mapping[str, float]], float],
 ) -> UnknownExchange | None:
-    """Replace the unknown parameter that sets the stiffness level by the unknown stiffness at rest [N/m].
+    """Make the stiffness at rest [N/m] an unknown of the fit, in place of the law's stiffness parameter.
 
-    compute_stiffness_at_rest : {name: value} -> stiffness at rest [N/m]
+    compute_stiffness_at_rest : {fitted parameter: value} -> stiffness at rest [N/m], without slip
 
-    Returns the exchange of unknowns; None if the level is not fitted.
+    Returns the exchange of both unknowns; None if the stiffness parameter is not fitted.
     """
-    _, level, *_ = FITTED_PARAMETERS[parameter_file.law]
+    _, level, *_ = DEFAULT_FITTED_PARAMETERS[parameter_file.law]
     if level not in fitted_names:
         return None
     return UnknownExchange(level, compute_stiffness_at_rest, "N/m", "stiffness at rest")
 
 
-def _joint_parameters(parameter_values: Mapping[str, float]) -> dict[str, float]:
-    """Values of the joint's parameters: all fitted values except the unknowns outside of the joint."""
+def _select_joint_parameters(parameter_values: Mapping[str, float]) -> dict[str, float]:
+    """Select the parameters of the joint from the fitted values, without the unknowns outside the joint."""
     return {name: value for name, value in parameter_values.items() if name not in UNKNOWNS_OUTSIDE_JOINT}

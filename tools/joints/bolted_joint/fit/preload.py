@@ -33,16 +33,22 @@ from jointfmu.quantity import Array
 from jointfmu.quantity.units import UnitSizes, conversion_factor, unit_sizes
 
 from ....common import columns
-from ....inputs.fitting.least_squares import Solution, Unknown, covariance, select_start, solve
+from ....inputs.fitting.least_squares import (
+    FitSolution,
+    Unknown,
+    parameter_covariance,
+    select_start_values,
+    solve_least_squares,
+)
 from ....inputs.fitting.outcome import (
-    FitFacts,
+    DerivedFitValues,
     FitPlot,
     FitResult,
-    correlation_note,
-    fitted_parameters,
-    make_unknowns,
+    build_fitted_file,
+    make_fit_unknowns,
+    note_residual_correlation,
 )
-from ....run.engine import VariableJoint
+from ....run.engine import ParametricJoint
 
 SERIES_STIFFNESS_NAME = "series_stiffness"
 """Unknown that is not a parameter of the joint: stiffness [N/m] of the structure in series."""
@@ -52,11 +58,11 @@ COLUMN_UNITS: Mapping[str, UnitSizes] = {
     "frequency": unit_sizes("Hz", "kHz"),
 }
 """Columns of a file of the fit, with their units."""
-MIN_DEGREES_OF_FREEDOM = 2
+MIN_STATISTICAL_DEGREES_OF_FREEDOM = 2
 """Number of points in excess of the unknowns [1], from which the fit estimates the noise of a point."""
-ASSUMED_NOISE = 0.05
+ASSUMED_RELATIVE_NOISE = 0.05
 """Relative standard deviation [1] of a point, assumed if there are too few points to estimate it."""
-FITTED_PARAMETERS: Mapping[str, tuple[str, ...]] = {
+DEFAULT_FITTED_PARAMETERS: Mapping[str, tuple[str, ...]] = {
     "zhao2018": ("surface.G", "surface.D"),
     "roughness": ("h",),
     "table": ("table.factor",),
@@ -71,40 +77,44 @@ START_VALUES: Mapping[str, tuple[float, ...]] = {
 """{parameter: further start values of the search}, in addition to the values of the start file."""
 
 
-COMPLETE_JOINT_ENGINES = VariableJoint(MODELS[0])
+BOLTED_JOINT_FOR_FITS = ParametricJoint(MODELS[0])
 """Evaluations of the joint with elastic sides, at trial values of the fitted parameters."""
 
 
-def joint_stiffness(joint: AnyBoltedJoint, preload: Array, direction: str = "normal") -> Array:
+def compute_joint_stiffness(
+    joint_parameters: AnyBoltedJoint, preload: Array, motion_direction: str = "normal"
+) -> Array:
     """Stiffness (n) [N/m] of the tightened joint at preloads (n) [N], equal to the output of the FMU.
 
-    direction : "normal" (K_zz) or "tangential" (K_xx)
+    motion_direction : "normal" (K_zz) or "tangential" (K_xx)
     """
-    if joint.has_elastic_members:
-        complete = COMPLETE_JOINT_ENGINES.with_parameters(joint)
-        columns = complete.follow({"preload": preload}, each_from_rest=True).columns
-        return columns["K_zz" if direction == "normal" else "K_xx"]
-    shape = merged_normalised_pressure(joint.pattern)
-    p = preload_pressure(joint, shape, preload, 0.0)
-    curve = tabulate_approach(joint)
-    k, _ = stiffness_curve(joint, np.maximum(p, curve.closing_end_load))
-    closing = p < curve.closing_end_load  # below this pressure the curve, not the law, defines the stiffness
+    if joint_parameters.has_elastic_members:
+        complete = BOLTED_JOINT_FOR_FITS.open_with_parameters(joint_parameters)
+        columns = complete.evaluate_path({"preload": preload}, restart_at_each_point=True).variable_columns
+        return columns["K_zz" if motion_direction == "normal" else "K_xx"]
+    shape = merged_normalised_pressure(joint_parameters.pattern)
+    p = preload_pressure(joint_parameters, shape, preload, 0.0)
+    curve = tabulate_approach(joint_parameters)
+    k, _ = stiffness_curve(joint_parameters, np.maximum(p, curve.closing_end_pressure))
+    closing = p < curve.closing_end_pressure  # here the curve, not the law, defines the stiffness
     k[closing] = curve.derivatives(curve.inverse(p[closing]), 1)[1]
-    normal = joint.A_0 * np.sum(shape.area_share * k, axis=-1)
-    if direction == "normal":
-        pulling = np.where(working_preload(joint, preload) > 0.0, 1.0, LIFT_OFF_OVER_FULL_STIFFNESS)
-        return np.asarray(normal + joint.n_bolts * joint.bolt_stiffness * pulling)
-    return np.asarray(joint.shear_stiffness_ratio() * normal)
+    normal = joint_parameters.A_0 * np.sum(shape.area_share * k, axis=-1)
+    if motion_direction == "normal":
+        pulling = np.where(
+            working_preload(joint_parameters, preload) > 0.0, 1.0, LIFT_OFF_OVER_FULL_STIFFNESS
+        )
+        return np.asarray(normal + joint_parameters.n_bolts * joint_parameters.bolt_stiffness * pulling)
+    return np.asarray(joint_parameters.shear_stiffness_ratio() * normal)
 
 
 @cache
 def merged_normalised_pressure(pressure_source: PressureSource) -> MergedDistribution:
-    """Normalised pressure distribution without a moment, with nodes of equal pressure merged."""
+    """Contact pressure over mean pressure [1] without a moment, with nodes of equal pressure merged."""
     return pressure_distribution(pressure_source).merge_nodes(keeps_moment_pressure=False)
 
 
 def fit(
-    path: str | Path,
+    data_path: str | Path,
     start_parameters: ParameterFile | None = None,
     fitted_names: Sequence[str] | None = None,
     *,
@@ -117,8 +127,8 @@ def fit(
     Parameters
     ----------
     start_parameters : parameters of the joint to start from
-    fitted_names     : names to fit; None: those of FITTED_PARAMETERS, with `mass` instead of the level for
-                       frequencies without `modal_mass`; for one preload the level alone
+    fitted_names     : names to fit; None: those of DEFAULT_FITTED_PARAMETERS. For frequencies without
+                       `modal_mass`, `mass` replaces the stiffness level. For one preload: the level alone.
     direction        : direction of the motion, "normal" or "tangential"
     modal_mass       : [kg] mass that vibrates on the joint, for frequencies; replaces `mass`
     series_stiffness : [N/m] of the structure, in series; None: rigid, unless it is among the names
@@ -126,7 +136,7 @@ def fit(
     Raises ValueError with a one-line message for a bad file, unit or value, or a name that cannot be fitted.
     Raises RuntimeError if the fit does not converge.
     """
-    curve = _read_curve(Path(path))
+    curve = _read_preload_curve(Path(data_path))
     if start_parameters is None:
         raise ValueError(
             "the joint to start from is missing; state its parameter file (--params), as jointfmu new "
@@ -134,65 +144,67 @@ def fit(
         )
     file = _set_modal_mass(start_parameters, curve, modal_mass, series_stiffness)
     is_mass_fitted = curve.quantity_name == "frequency" and modal_mass is None
-    level, *exponent = FITTED_PARAMETERS[file.law]
-    if curve.preload_count == 1:
+    level, *exponent = DEFAULT_FITTED_PARAMETERS[file.law]
+    if curve.different_preload_count == 1:
         exponent = []
     names = list(
         fitted_names if fitted_names is not None else (*exponent, "mass" if is_mass_fitted else level)
     )
 
-    def predict(parameter_values: Mapping[str, float]) -> Array:
+    def predict_measured_values(parameter_values: Mapping[str, float]) -> Array:
         """Stiffness or frequency at the measured preloads, with values of the fitted parameters."""
         own = {name: value for name, value in parameter_values.items() if name != SERIES_STIFFNESS_NAME}
         joint = replace(file, origins={}, sources={}).with_values(own, "calibration", "fit").values
-        return curve.predict(joint, parameter_values.get(SERIES_STIFFNESS_NAME, series_stiffness), direction)
+        return curve.predict_quantity(
+            joint, parameter_values.get(SERIES_STIFFNESS_NAME, series_stiffness), direction
+        )
 
     def logarithmic_error(parameter_values: Mapping[str, float]) -> Array:
         """Logarithm of predicted over measured values (n) [1]."""
-        return np.log(predict(parameter_values) / curve.measured_values)
+        return np.log(predict_measured_values(parameter_values) / curve.measured_values)
 
-    if curve.preload_count < len(names) <= 2:
+    if curve.different_preload_count < len(names) <= 2:
         raise ValueError(
-            f"{path}: has {curve.preload_count} different preloads, too few for {' and '.join(names)}: at "
-            f"least {len(names)} are needed"
+            f"{data_path}: has {curve.different_preload_count} different preloads, too few for "
+            f"{' and '.join(names)}: at least {len(names)} are needed"
         )
     unknowns = _find_start_values(file, names, curve, logarithmic_error)
-    solution, is_noise_assumed = _solve(unknowns, logarithmic_error, curve)
+    solution, is_noise_assumed = _solve_fit(unknowns, logarithmic_error, curve)
     own = {name: value for name, value in solution.values.items() if name != SERIES_STIFFNESS_NAME}
-    span = f"preload {curve.preload[0]:g} to {curve.preload[-1]:g} N, {direction} {curve.quantity_name}"
-    result = fitted_parameters(file, own, "calibration", Path(path).name, span)
+    span = f"preload {curve.preloads[0]:g} to {curve.preloads[-1]:g} N, {direction} {curve.quantity_name}"
+    result = build_fitted_file(file, own, "calibration", Path(data_path).name, span)
     stiffness = solution.values.get(SERIES_STIFFNESS_NAME, series_stiffness)
-    margin = 0.5 * curve.preload[0] if curve.preload_count == 1 else 0.0
-    grid = np.linspace(curve.preload[0] - margin, curve.preload[-1] + margin, 200)
-    finer = replace(curve, preload=grid, measured_values=np.ones_like(grid))
+    margin = 0.5 * curve.preloads[0] if curve.different_preload_count == 1 else 0.0
+    grid = np.linspace(curve.preloads[0] - margin, curve.preloads[-1] + margin, 200)
+    finer = replace(curve, preloads=grid, measured_values=np.ones_like(grid))
     unit, size = (
         ("Hz", 1.0) if curve.quantity_name == "frequency" else ("N/um", conversion_factor("N/m", "N/um"))
     )
     kN = COLUMN_UNITS["preload"]["kN"]
     picture = FitPlot(
-        measured_x=curve.preload / kN,
+        measured_x=curve.preloads / kN,
         measured_y=curve.measured_values * size,
         misfit=100.0 * np.expm1(-solution.residuals),
-        law_curve=(grid / kN, finer.predict(result.values, stiffness, direction) * size),
+        law_curve=(grid / kN, finer.predict_quantity(result.values, stiffness, direction) * size),
         axis_labels=("preload of each bolt [kN]", f"{curve.quantity_name} [{unit}]", "data / law - 1 [%]"),
     )
-    notes = [] if is_noise_assumed else correlation_note(solution.residuals, "curve")
+    notes = [] if is_noise_assumed else note_residual_correlation(solution.residuals, "curve")
     if is_noise_assumed:
         notes.append(
-            f"the scatter of a point is not known from {curve.preload.size}: the intervals are those of "
+            f"{curve.preloads.size} points are too few to find their scatter: the intervals assume "
             f"{solution.noise:.0%} for each point"
         )
-    if curve.preload_count == 1 and FITTED_PARAMETERS[file.law][1:]:
+    if curve.different_preload_count == 1 and DEFAULT_FITTED_PARAMETERS[file.law][1:]:
         notes.append(
-            f"one preload determines the level alone: {FITTED_PARAMETERS[file.law][1]}, which gives the "
-            "exponent, is kept; measure at a second preload to fit it"
+            f"one preload does not determine the exponent: {DEFAULT_FITTED_PARAMETERS[file.law][1]} keeps "
+            "its value; measure at a second preload to fit it"
         )
     if is_mass_fitted and "mass" in names and level not in names:
         notes.append(
-            f"frequencies without a stated mass give K/mass only: the level is in mass, {level} is kept; "
-            f"state the modal mass to fit {level}"
+            f"frequencies determine K/mass only: mass is fitted, and {level} keeps its value; state the "
+            f"modal mass to fit {level}"
         )
-    return FitResult(result, solution, _fit_facts(curve, solution), [picture], notes=notes)
+    return FitResult(result, solution, _summarise_fit(curve, solution), [picture], notes=notes)
 
 
 @dataclass(frozen=True, slots=True)
@@ -200,75 +212,80 @@ class PreloadCurve:
     """Measured stiffness or frequency as a function of the preload.
 
     quantity_name   : "stiffness" [N/m] or "frequency" [Hz]
-    preload         : (n) [N] of each bolt, ascending
+    preloads        : (n) [N] of each bolt, ascending
     measured_values : (n) measured values
     """
 
     quantity_name: str
-    preload: Array
+    preloads: Array
     measured_values: Array
 
     @property
-    def power(self) -> float:
+    def preload_exponent(self) -> float:
         """Exponent [1] of the power of the preload with which the measured quantity grows.
 
-        The curve needs at least two different preloads.
+        The curve must have at least two different preloads.
         """
-        return float(np.polyfit(np.log(self.preload), np.log(self.measured_values), 1)[0])
+        return float(np.polyfit(np.log(self.preloads), np.log(self.measured_values), 1)[0])
 
     @property
-    def preload_count(self) -> int:
+    def different_preload_count(self) -> int:
         """Number of different preloads."""
-        return int(np.unique(self.preload).size)
+        return int(np.unique(self.preloads).size)
 
-    def predict(self, joint: AnyBoltedJoint, series_stiffness: float | None, direction: str) -> Array:
-        """Predict the quantity (n) for a joint, with an optional stiffness [N/m] in series."""
-        K = joint_stiffness(joint, self.preload, direction)
+    def predict_quantity(
+        self, joint_parameters: AnyBoltedJoint, series_stiffness: float | None, motion_direction: str
+    ) -> Array:
+        """Predict stiffness or frequency (n) of a joint at the preloads."""
+        K = compute_joint_stiffness(joint_parameters, self.preloads, motion_direction)
         K = K if series_stiffness is None else 1.0 / (1.0 / K + 1.0 / series_stiffness)
-        return K if self.quantity_name == "stiffness" else np.sqrt(K / joint.mass) / (2.0 * np.pi)
+        return K if self.quantity_name == "stiffness" else np.sqrt(K / joint_parameters.mass) / (2.0 * np.pi)
 
 
-def _read_curve(path: Path) -> PreloadCurve:
+def _read_preload_curve(data_path: Path) -> PreloadCurve:
     """Read and check a measured curve: stiffness or frequency over preload."""
-    table = columns.read_columns(path, COLUMN_UNITS, 1)
+    table = columns.read_columns(data_path, COLUMN_UNITS, 1)
     preload = table.require_column("preload", COLUMN_UNITS)
-    quantities = [name for name in ("stiffness", "frequency") if name in table.columns]
+    quantities = [name for name in ("stiffness", "frequency") if name in table.values_by_name]
     if len(quantities) != 1:
         have = "both" if quantities else "neither"
         choice = {name: COLUMN_UNITS[name] for name in ("stiffness", "frequency")}
         raise ValueError(
-            f"{path}: has {have} of stiffness and frequency; expected one: {columns.format_heading(choice)}"
+            f"{data_path}: has {have} of stiffness and frequency; expected one: "
+            f"{columns.format_expected_heading(choice)}"
         )
-    table.check_positive(("preload", quantities[0]), COLUMN_UNITS)
+    table.check_positive_columns(("preload", quantities[0]), COLUMN_UNITS)
     order = np.argsort(preload, kind="stable")
-    preload, value = preload[order], table.columns[quantities[0]][order]
+    preload, value = preload[order], table.values_by_name[quantities[0]][order]
     curve = PreloadCurve(quantities[0], preload, value)
-    if curve.preload_count > 1 and curve.power <= 0.0:
+    if curve.different_preload_count > 1 and curve.preload_exponent <= 0.0:
         raise ValueError(
-            f"{path}: the {quantities[0]} does not rise with the preload (power {curve.power:.2g})"
+            f"{data_path}: the {quantities[0]} falls with the preload, with the power "
+            f"{curve.preload_exponent:.2g}; expected a rise: check the columns"
         )
     return curve
 
 
-def _solve(
+def _solve_fit(
     unknowns: Sequence[Unknown],
     logarithmic_error: Callable[[Mapping[str, float]], Array],
     preload_curve: PreloadCurve,
-) -> tuple[Solution, bool]:
-    """Solve the fit. Returns the solution, and whether the noise of a point is assumed.
+) -> tuple[FitSolution, bool]:
+    """Solve the least-squares fit of stiffness or frequency over preload.
 
-    The noise is assumed if there are at most two unknowns and few points: it is then ASSUMED_NOISE, or the
-    noise of the residuals if that is larger. Otherwise the noise follows from the residuals.
+    The measurement noise is assumed if there are at most two unknowns and few points: it is then
+    ASSUMED_RELATIVE_NOISE, or the noise of the residuals if that is larger. Otherwise the noise follows from
+    the residuals.
     """
-    degrees_of_freedom = preload_curve.preload.size - len(unknowns)
-    if len(unknowns) > 2 or degrees_of_freedom >= MIN_DEGREES_OF_FREEDOM:
-        return solve(unknowns, logarithmic_error), False
-    solution = solve(unknowns, logarithmic_error, noise=ASSUMED_NOISE)
+    degrees_of_freedom = preload_curve.preloads.size - len(unknowns)
+    if len(unknowns) > 2 or degrees_of_freedom >= MIN_STATISTICAL_DEGREES_OF_FREEDOM:
+        return solve_least_squares(unknowns, logarithmic_error), False
+    solution = solve_least_squares(unknowns, logarithmic_error, residual_deviation=ASSUMED_RELATIVE_NOISE)
     if degrees_of_freedom < 1:
         return solution, True
     noise = float(np.sqrt(solution.residuals @ solution.residuals / degrees_of_freedom))
-    noise = max(noise, ASSUMED_NOISE)
-    return replace(solution, noise=noise, covariance=covariance(solution.jacobian, noise)), True
+    noise = max(noise, ASSUMED_RELATIVE_NOISE)
+    return replace(solution, noise=noise, covariance=parameter_covariance(solution.jacobian, noise)), True
 
 
 def _set_modal_mass(
@@ -292,7 +309,7 @@ def _set_modal_mass(
         return start_parameters
     if preload_curve.quantity_name == "stiffness":
         raise ValueError(
-            f"modal mass = {modal_mass:g} kg is stated, but the file has stiffnesses, no frequencies"
+            f"modal mass = {modal_mass:g} kg is for frequencies, but the file has stiffnesses; leave it out"
         )
     return start_parameters.with_values(
         {"mass": modal_mass}, "user", "modal mass stated with the frequencies"
@@ -306,7 +323,7 @@ def _find_start_values(
     logarithmic_error: Callable[[Mapping[str, float]], Array],
 ) -> Sequence[Unknown]:
     """Unknowns of the fit, each with the start value of smallest error out of several."""
-    parameters = make_unknowns(
+    parameters = make_fit_unknowns(
         parameter_file, [name for name in fitted_names if name != SERIES_STIFFNESS_NAME], {}
     )
     level = (
@@ -318,26 +335,26 @@ def _find_start_values(
         SERIES_STIFFNESS_NAME in fitted_names
     )
 
-    def evaluate_start(parameter_values: dict[str, float]) -> tuple[Mapping[str, float], float]:
-        """Scale the mass, if it is fitted, to the mean frequency. Returns values and squared error."""
+    def evaluate_start_error(parameter_values: dict[str, float]) -> tuple[Mapping[str, float], float]:
+        """Compute the squared error of start values; a fitted mass is first scaled to the mean frequency."""
         errors = logarithmic_error(parameter_values)
         if "mass" in parameter_values:
             parameter_values["mass"] *= float(np.exp(2.0 * np.mean(errors)))
             errors = errors - np.mean(errors)
         return parameter_values, float(errors @ errors)
 
-    return select_start(parameters, START_VALUES, evaluate_start)
+    return select_start_values(parameters, START_VALUES, evaluate_start_error)
 
 
-def _fit_facts(preload_curve: PreloadCurve, solution: Solution) -> FitFacts:
-    """Facts about the fit: largest error, noise, exponent of the preload."""
+def _summarise_fit(preload_curve: PreloadCurve, fit_solution: FitSolution) -> DerivedFitValues:
+    """Summarise the fit: largest error, noise, exponent of the preload."""
     power = {}
-    if preload_curve.preload_count > 1:
+    if preload_curve.different_preload_count > 1:
         text = f"of the preload with which the {preload_curve.quantity_name} grows"
-        power["power"] = (preload_curve.power, "1", text)
+        power["power"] = (preload_curve.preload_exponent, "1", text)
     return {
-        "points": (float(preload_curve.preload.size), "1", "points used"),
+        "points": (float(preload_curve.preloads.size), "1", "points used"),
         **power,
-        "noise": (solution.noise, "1", "relative standard deviation of a point about the fitted law"),
-        "largest_misfit": (float(np.max(np.abs(solution.residuals))), "1", "relative"),
+        "noise": (fit_solution.noise, "1", "relative standard deviation of a point about the fitted law"),
+        "largest_misfit": (float(np.max(np.abs(fit_solution.residuals))), "1", "relative"),
     }

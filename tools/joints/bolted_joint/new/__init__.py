@@ -5,17 +5,17 @@ from ....inputs.drawing.faces import FACE_OPTIONS
 from ....inputs.drawing.part import DrawingOptions, NewJoint, NewJointCommand
 
 
-def _make_joint(options: DrawingOptions) -> NewJoint:
-    """Make a bolted joint from the options of a drawing; loads finite elements when they are needed."""
+def _make_joint(drawing_options: DrawingOptions) -> NewJoint:
+    """Make a bolted joint from the options of a drawing; imports the module that computes it when called."""
     from . import plate
 
-    return plate.make_joint(options)
+    return plate.make_joint(drawing_options)
 
 
-STANDARD_WASHERS = "ISO 7089"
+STANDARD_WASHER_OPTION = "ISO 7089"
 """Value of the option `washers` for the washers of this standard."""
 
-ATTACHMENTS = {
+ATTACHMENT_SURFACES = {
     "faces": "the outer faces",
     "edge": "the edges at -x (side 1) and +x (side 2)",
     "heads": "the faces under heads and nuts",
@@ -26,98 +26,133 @@ TIGHTENING_METHODS = ("torque-wrench", "angle", "yield", "impact")
 """Methods of tightening, keys of the table `tightening` in models/tables/bolts.toml."""
 
 NEW_JOINT_COMMAND = NewJointCommand(
-    description="a bolted joint of two plates",
-    example="--plate 200x100 --bolts 4xM12 --at 160x60 --grip 40 --material steel --finish ground "
+    joint_description="a bolted joint of two plates",
+    example_options="--plate 200x100 --bolts 4xM12 --at 160x60 --grip 40 --material steel --finish ground "
     "--preload 30e3",
-    options=(
-        Option("plate", "length along x and width along y [mm]", "LxW", separator="x", is_required=True),
+    command_options=(
+        Option(
+            "plate",
+            "length along x and width along y of both plates [mm], as in 200x100",
+            "LxW",
+            separator="x",
+            is_required=True,
+        ),
         Option(
             "bolts",
-            "number and thread, as in 4xM12; with a fine pitch in mm: 4xM12x1.25",
+            "number of bolts and thread, as in 4xM12; with a fine pitch in mm: 4xM12x1.25",
             "NxMd",
             separator="x",
             is_required=True,
         ),
         Option(
             "at",
-            "distances of the outermost bolts along x and y, LxW, or the position X,Y of each bolt from "
-            "the middle of the plate [mm]",
+            "bolt pattern [mm]: LxW, the distances between the outermost bolts along x and y, as in 160x60; "
+            "or X,Y of each bolt from the middle of the plate, as in -80,0 80,0",
             "PLACE",
             is_list=True,
             separator="x",
         ),
-        Option("grid", "number of bolts along x and y, if --at LxW leaves it open", "NxM", separator="x"),
-        Option("circle", "diameter of the pitch circle of the bolts [mm]", "D"),
+        Option(
+            "grid",
+            "number of bolts along x and y, as in 3x2, if the bolts fit --at LxW in several ways",
+            "NxM",
+            separator="x",
+        ),
+        Option("circle", "bolt pattern, in place of --at: diameter of the pitch circle [mm]", "D"),
         Option(
             "grip",
-            "clamped length of both plates together, or of each [mm]",
+            "thickness of both plates together, without washers, or of each plate [mm]",
             "L",
             is_list=True,
             is_required=True,
         ),
-        Option("tapped", "the thread is tapped in side 2; --grip is the thickness of side 1", is_flag=True),
-        Option("head", "head of the bolts (default: hexagon)", choices=("hexagon", "socket")),
-        Option("hole", "diameter of the clearance holes [mm] (default: ISO 273, medium)", "D"),
-        Option("bearing", "outer diameter of the bearing surface [mm] (default: of the head)", "D"),
+        Option(
+            "tapped",
+            "the bolts have no nuts: the thread is tapped in the plate of side 2; --grip is then the "
+            "thickness of side 1",
+            is_flag=True,
+        ),
+        Option("head", "shape of the bolt heads (default: hexagon)", choices=("hexagon", "socket")),
+        Option("hole", "diameter of the clearance holes [mm] (default: medium series of ISO 273)", "D"),
+        Option(
+            "bearing",
+            "outer diameter of the bearing surface under head and nut [mm] (default: that of the head)",
+            "D",
+        ),
         Option(
             "washers",
-            "steel washers under heads and nuts: outer diameter and thickness [mm]; without a value those of "
-            f"{STANDARD_WASHERS} (default: none)",
+            "steel washers under heads and nuts: outer diameter and thickness [mm], as in 24x2.5; without a "
+            f"value those of {STANDARD_WASHER_OPTION} (default: none)",
             "DxT",
             separator="x",
-            lone_value=STANDARD_WASHERS,
+            lone_value=STANDARD_WASHER_OPTION,
         ),
-        Option("preload", "preload of each bolt [N] (default: VDI 2230, or from --torque)", "F"),
+        Option(
+            "preload",
+            "preload of each bolt after tightening [N] (default: from --torque, else VDI 2230, Table A1)",
+            "F",
+        ),
         Option(
             "torque",
-            "tightening torque of each bolt [N.m], in place of --preload: VDI 2230 gives the preload and its "
-            "range",
+            "tightening torque of each bolt [N.m], in place of --preload; preload and range follow from VDI "
+            "2230",
             "M",
         ),
         Option(
             "thread_friction",
-            "coefficient of friction in the thread [1] (default: 0.12, 0.08 to 0.16, VDI 2230, Table A5)",
+            "coefficient of friction in the thread [1] (default: 0.12, with the range 0.08 to 0.16 of VDI "
+            "2230)",
             "MU",
         ),
         Option(
             "head_friction",
-            "coefficient of friction under the head [1], for --torque (default: 0.12, 0.08 to 0.16)",
+            "with --torque: coefficient of friction under the head [1] (default: 0.12, with the range 0.08 "
+            "to 0.16)",
             "MU",
         ),
         Option(
             "tightening",
-            "method of tightening, which gives the scatter of the preload by VDI 2230, Table A8 (default: "
+            "method of tightening: gives the scatter of the preload, by VDI 2230, Table A8 (default: "
             "torque-wrench with --torque, else no scatter)",
             choices=TIGHTENING_METHODS,
         ),
         Option(
-            "embedding", "preload that each bolt loses by embedding [N] (default: VDI 2230, Table 5)", "F"
+            "embedding",
+            "preload that each bolt loses by embedding after tightening [N] (default: from VDI 2230, Table "
+            "5)",
+            "F",
         ),
         Option(
             "property_class",
-            "property class of the bolts: for the default preload (default: 8.8), and for the share of "
-            "the yield strength that tightening may use (0.9)",
+            "property class of the bolts: gives the preload if you state none (default: 8.8); a stated "
+            "class also warns if tightening uses more than 90 % of the yield strength",
             choices=("8.8", "10.9", "12.9"),
         ),
         Option(
             "field",
-            "contact pressure from the cones of the bolts, or computed by finite elements (default: cones)",
+            "contact pressure of the interface: from the deformation cones of VDI 2230, or computed by "
+            "finite elements (default: cones)",
             choices=("cones", "computed"),
         ),
-        Option("thickness", "thickness of each plate [mm] (default: half the grip)", "T", is_list=True),
+        Option(
+            "thickness",
+            "thickness of each plate [mm] (default: from --grip, half of it each)",
+            "T",
+            is_list=True,
+        ),
         Option(
             "sides",
-            "elastic: the complete joint, with members and bolts, which needs the extra fem; rigid: the "
-            "interface only (default: elastic)",
+            "elastic: interface, plates and bolts (needs pip install 'jointfmu[fem]'); rigid: interface and "
+            "bolts between rigid plates (default: elastic)",
             choices=("elastic", "rigid"),
         ),
         Option(
             "attached",
             "surfaces that move rigidly with the connected bodies: outer faces, edges (side 1 at -x, "
             "side 2 at +x), or faces under heads and nuts (default: faces)",
-            choices=tuple(ATTACHMENTS),
+            choices=tuple(ATTACHMENT_SURFACES),
         ),
-        Option("law", "law of the interface (default: roughness)", choices=("roughness", "zhao2018")),
+        Option("law", "contact law of the interface (default: roughness)", choices=("roughness", "zhao2018")),
         *FACE_OPTIONS,
     ),
     make_joint=_make_joint,

@@ -13,9 +13,9 @@ from ....inputs.drawing.tables import (
     read_tightening_methods,
 )
 
-DEFAULT_CLASS = "8.8"
+DEFAULT_PROPERTY_CLASS = "8.8"
 """Property class of bolts for the default preload, if none is stated."""
-DEFAULT_METHOD = "torque-wrench"
+DEFAULT_TIGHTENING_METHOD = "torque-wrench"
 """Method of tightening if only a torque is stated."""
 
 
@@ -23,50 +23,55 @@ DEFAULT_METHOD = "torque-wrench"
 class AssemblyPreload:
     """Assembly preload of each bolt.
 
-    force                : F_M [N], the mean if it scatters
-    min_force, max_force : range of the force [N]; both equal `force` if none is known
-    origin               : origin of the value, see parameters.ORIGINS
-    source               : source of value and range
-    utilisation          : comparative stress over yield strength [1] at `force`; None: unknown property class
-    warnings             : one line each
+    preload_force        : F_M [N], the mean if it scatters
+    min_preload_force, max_preload_force : range of the force [N]; both equal `preload_force` if none is known
+    preload_origin       : origin of the value, see parameters.VALUE_ORIGINS
+    preload_source       : source of value and range
+    yield_utilisation    : comparative stress over yield strength [1] at `preload_force`; None: the property
+                           class is not known
+    preload_warnings     : one line each
     """
 
-    force: float
-    min_force: float
-    max_force: float
-    origin: str
-    source: str
-    utilisation: float | None = None
-    warnings: tuple[str, ...] = ()
+    preload_force: float
+    min_preload_force: float
+    max_preload_force: float
+    preload_origin: str
+    preload_source: str
+    yield_utilisation: float | None = None
+    preload_warnings: tuple[str, ...] = ()
 
     @property
     def has_range(self) -> bool:
         """Whether a range of the assembly preload is known."""
-        return self.max_force > self.min_force
+        return self.max_preload_force > self.min_preload_force
 
-    def add_to(self, parameter_sheet: ParameterSheet) -> None:
-        """Add the start value of the input `preload` to the sheet, with its range."""
-        parameter_sheet.add_parameter("inputs.preload", self.force, self.origin, self.source)
+    def add_to_sheet(self, parameter_sheet: ParameterSheet) -> None:
+        """Add the start value of the input `preload` to the parameter sheet, with its range."""
+        parameter_sheet.add_parameter(
+            "inputs.preload", self.preload_force, self.preload_origin, self.preload_source
+        )
         if self.has_range:
-            parameter_sheet.set_parameter_range("inputs.preload", self.min_force, self.max_force)
+            parameter_sheet.set_parameter_range(
+                "inputs.preload", self.min_preload_force, self.max_preload_force
+            )
 
-    def facts(self) -> dict[str, tuple[float, str, str]]:
-        """Facts for the user: range of the preload and utilisation of the yield strength, as far as known."""
+    def describe_scatter_and_utilisation(self) -> dict[str, tuple[float, str, str]]:
+        """Range of the preload and utilisation of the yield strength for the user, as far as known."""
         facts = {}
         if self.has_range:
-            facts["preload_low"] = (self.min_force, "N", "lower end of the range of the preload")
-            facts["preload_high"] = (self.max_force, "N", "upper end of the range of the preload")
-        if self.utilisation is not None:
+            facts["preload_low"] = (self.min_preload_force, "N", "lower end of the range of the preload")
+            facts["preload_high"] = (self.max_preload_force, "N", "upper end of the range of the preload")
+        if self.yield_utilisation is not None:
             text = (
                 "share of the yield strength that tension and torsion use in tightening (von Mises, VDI "
                 f"2230; allowed are {vdi2230.YIELD_UTILISATION:g})"
             )
-            facts["yield_utilisation"] = (self.utilisation, "1", text)
+            facts["yield_utilisation"] = (self.yield_utilisation, "1", text)
         return facts
 
 
-def find_preload(
-    options: DrawingOptions, thread: Thread, bearing_diameter: float, hole_diameter: float
+def find_assembly_preload(
+    drawing_options: DrawingOptions, thread: Thread, bearing_diameter: float, hole_diameter: float
 ) -> AssemblyPreload:
     """Find the assembly preload from the options of a drawing.
 
@@ -74,157 +79,175 @@ def find_preload(
 
     Raises ValueError, one line, for options that contradict each other, or a torque that no bolt bears.
     """
-    _check_options(options)
+    _check_preload_options(drawing_options)
     friction = {
-        name: parse_quantity(name, options[name])
-        if options[name] is not None
-        else StatedNumber(vdi2230.DEFAULT_FRICTION, *vdi2230.FRICTION_INTERVAL)
+        name: parse_quantity(name, drawing_options[name])
+        if drawing_options[name] is not None
+        else StatedNumber(vdi2230.DEFAULT_BOLT_FRICTION, *vdi2230.BOLT_FRICTION_INTERVAL)
         for name in ("thread_friction", "head_friction")
     }
-    mu_G = friction["thread_friction"].value
-    if options["torque"] is not None:
-        preload = _preload_from_torque(options, thread, bearing_diameter, hole_diameter, friction)
-    elif options["preload"] is not None:
-        number = parse_quantity("preload", options["preload"])
+    mu_G = friction["thread_friction"].stated_value
+    if drawing_options["torque"] is not None:
+        preload = _preload_from_torque(drawing_options, thread, bearing_diameter, hole_diameter, friction)
+    elif drawing_options["preload"] is not None:
+        number = parse_quantity("preload", drawing_options["preload"])
         preload = AssemblyPreload(*number, "user", "stated on the drawing")
     else:
-        name = options["property_class"] or DEFAULT_CLASS
+        name = drawing_options["property_class"] or DEFAULT_PROPERTY_CLASS
         force = vdi2230.assembly_preload(thread, property_class_strength(name, "yield", thread), mu_G)
-        text = f"VDI 2230, Table A1: {thread.name}-{name}, 90 % of the yield strength, mu_G = {mu_G:g}"
+        text = f"VDI 2230, Table A1: {thread.thread_name}-{name}, 90 % of the yield strength, mu_G = {mu_G:g}"
         preload = AssemblyPreload(force, force, force, "estimate", text)
-    if options["torque"] is None and options["tightening"] is not None:
-        method = read_tightening_methods()[options["tightening"]]
-        preload = _scatter(preload, method)
-    return _check_strength(options, preload, thread, mu_G)
+    if drawing_options["torque"] is None and drawing_options["tightening"] is not None:
+        method = read_tightening_methods()[drawing_options["tightening"]]
+        preload = _add_scatter_range(preload, method)
+    return _check_bolt_strength(drawing_options, preload, thread, mu_G)
 
 
-def _check_options(options: DrawingOptions) -> None:
+def _check_preload_options(drawing_options: DrawingOptions) -> None:
     """Raise ValueError for options that contradict each other, or that would have no effect."""
-    if options["preload"] is not None and options["torque"] is not None:
+    if drawing_options["preload"] is not None and drawing_options["torque"] is not None:
         raise ValueError("--torque with --preload: state one of them")
     for name in ("thread_friction", "head_friction"):
-        if options[name] is None or options["torque"] is not None:
+        if drawing_options[name] is None or drawing_options["torque"] is not None:
             continue
-        if name == "head_friction" or options["preload"] is not None:
+        if name == "head_friction" or drawing_options["preload"] is not None:
             raise ValueError(
                 f"{format_option_flag(name)} has no effect without --torque; state --torque, or leave it out"
             )
 
 
 def _preload_from_torque(
-    options: DrawingOptions,
+    drawing_options: DrawingOptions,
     thread: Thread,
     bearing_diameter: float,
     hole_diameter: float,
-    friction: dict[str, StatedNumber],
+    friction_coefficients: dict[str, StatedNumber],
 ) -> AssemblyPreload:
-    """Assembly preload from the tightening torque: F_M = M_A/(0.16 P + 0.58 d_2 mu_G + D_Km mu_K/2)."""
-    torque, name = parse_quantity("torque", options["torque"]), options["tightening"] or DEFAULT_METHOD
+    """Assembly preload from the tightening torque: F_M = M_A/(0.16 P + 0.58 d_2 mu_G + D_Km mu_K/2).
+
+    VDI 2230: M_A torque, P pitch, d_2 pitch diameter, D_Km effective diameter of the friction under the head,
+    mu_G and mu_K friction coefficients of thread and head.
+    """
+    torque, name = (
+        parse_quantity("torque", drawing_options["torque"]),
+        drawing_options["tightening"] or DEFAULT_TIGHTENING_METHOD,
+    )
     method = read_tightening_methods()[name]
     diameter = vdi2230.head_friction_diameter(bearing_diameter, hole_diameter)
 
-    def force(moment: float, mu_G: float, mu_K: float) -> float:
+    def preload_at_torque(tightening_torque: float, mu_G: float, mu_K: float) -> float:
         """Preload [N] of a bolt at a torque [N.m] and coefficients of friction [1]."""
         d_2 = vdi2230.pitch_diameter(thread)
-        return moment / vdi2230.torque_per_preload(thread.pitch, d_2, diameter, mu_G, mu_K)
+        return tightening_torque / vdi2230.torque_per_preload(thread.pitch, d_2, diameter, mu_G, mu_K)
 
-    mu_G, mu_K = friction["thread_friction"], friction["head_friction"]
-    mean, lowest, highest = (force(moment, mu_G.value, mu_K.value) for moment in torque)
-    text = (
-        f"VDI 2230: M_A = {torque.value:g} N.m over 0.16 P + 0.58 d_2 mu_G + D_Km mu_K/2 of {thread.name}, "
-        f"D_Km = {diameter * 1e3:.4g} mm, {_friction_text(options, friction)}"
+    mu_G, mu_K = friction_coefficients["thread_friction"], friction_coefficients["head_friction"]
+    mean, lowest, highest = (
+        preload_at_torque(moment, mu_G.stated_value, mu_K.stated_value) for moment in torque
     )
-    is_known = all(options[each] is not None for each in friction)
+    text = (
+        f"VDI 2230: M_A = {torque.stated_value:g} N.m over 0.16 P + 0.58 d_2 mu_G + D_Km mu_K/2 of "
+        f"{thread.thread_name}, D_Km = {diameter * 1e3:.4g} mm, "
+        f"{_describe_friction(drawing_options, friction_coefficients)}"
+    )
+    is_known = all(drawing_options[each] is not None for each in friction_coefficients)
     preload = AssemblyPreload(mean, lowest, highest, "derived" if is_known else "estimate", text)
-    preload = _scatter(preload, method)
+    preload = _add_scatter_range(preload, method)
     if not method.depends_on_friction or not (mu_G.is_range or mu_K.is_range):
         return preload
-    low = force(torque.low, mu_G.high, mu_K.high)
-    high = force(torque.high, mu_G.low, mu_K.low)
+    low = preload_at_torque(torque.lower_limit, mu_G.upper_limit, mu_K.upper_limit)
+    high = preload_at_torque(torque.upper_limit, mu_G.lower_limit, mu_K.lower_limit)
     return AssemblyPreload(
-        preload.force,
-        min(preload.min_force, low),
-        max(preload.max_force, high),
-        preload.origin,
-        f"{preload.source}; friction alone: {low * 1e-3:.4g} to {high * 1e-3:.4g} kN",
+        preload.preload_force,
+        min(preload.min_preload_force, low),
+        max(preload.max_preload_force, high),
+        preload.preload_origin,
+        f"{preload.preload_source}; friction alone: {low * 1e-3:.4g} to {high * 1e-3:.4g} kN",
     )
 
 
-def _friction_text(options: DrawingOptions, friction: dict[str, StatedNumber]) -> str:
-    """Coefficients of friction of thread and head, with their sources."""
+def _describe_friction(
+    drawing_options: DrawingOptions, friction_coefficients: dict[str, StatedNumber]
+) -> str:
+    """Describe the coefficients of friction of thread and head as text, with their sources."""
     texts = []
     for name, symbol in (("thread_friction", "mu_G"), ("head_friction", "mu_K")):
-        number, text = friction[name], f"{symbol} = {friction[name].value:g}"
-        interval = f"{number.low:g} to {number.high:g}"
-        if options[name] is None:
-            text += f" ({vdi2230.FRICTION_SOURCE}: {interval})"
+        number, text = friction_coefficients[name], f"{symbol} = {friction_coefficients[name].stated_value:g}"
+        interval = f"{number.lower_limit:g} to {number.upper_limit:g}"
+        if drawing_options[name] is None:
+            text += f" ({vdi2230.BOLT_FRICTION_SOURCE}: {interval})"
         elif number.is_range:
             text += f" (stated: {interval})"
         texts.append(text)
     return ", ".join(texts)
 
 
-def _scatter(preload: AssemblyPreload, method: TighteningMethod) -> AssemblyPreload:
-    """Assembly preload with the scatter of a method of tightening.
+def _add_scatter_range(
+    assembly_preload: AssemblyPreload, tightening_method: TighteningMethod
+) -> AssemblyPreload:
+    """Add the range of the assembly preload that follows from the scatter of a tightening method.
 
-    The scatter is that of the greatest alpha_A in Table A8 of VDI 2230.
+    The scatter is that of the greatest tightening factor alpha_A in Table A8 of VDI 2230.
     """
-    least, greatest = method.tightening_factors
+    least, greatest = tightening_method.tightening_factors
     scatter = vdi2230.preload_scatter(greatest)
     return AssemblyPreload(
-        preload.force,
-        preload.min_force * (1.0 - scatter),
-        preload.max_force * (1.0 + scatter),
-        preload.origin,
-        f"{preload.source}; {method.title}: alpha_A = {least:g} to {greatest:g} (VDI 2230, Table A8), "
-        f"+-{scatter:.0%}",
+        assembly_preload.preload_force,
+        assembly_preload.min_preload_force * (1.0 - scatter),
+        assembly_preload.max_preload_force * (1.0 + scatter),
+        assembly_preload.preload_origin,
+        f"{assembly_preload.preload_source}; {tightening_method.display_title}: alpha_A = {least:g} to "
+        f"{greatest:g} (VDI 2230, Table A8), +-{scatter:.0%}",
     )
 
 
-def _check_strength(
-    options: DrawingOptions, preload: AssemblyPreload, thread: Thread, thread_friction: float
+def _check_bolt_strength(
+    drawing_options: DrawingOptions, stated_preload: AssemblyPreload, thread: Thread, thread_friction: float
 ) -> AssemblyPreload:
     """Add the utilisation of the yield strength to an assembly preload, and a warning if it is too high.
 
-    A preload above the proof load is warned of by `common.pressure`.
+    For a preload above the proof load, `common.pressure` warns.
 
     Raises ValueError for a torque whose preload is implausibly small, or at which the bolt yields (without a
     stated property class: the strongest bolt).
     """
-    stated = options["property_class"]
+    stated = drawing_options["property_class"]
     name = stated or vdi2230.STRONGEST_PROPERTY_CLASS
     strength = property_class_strength(name, "yield", thread)
-    utilisation = vdi2230.comparative_stress(thread, preload.force, thread_friction) / strength
-    bolt = f"{thread.name}-{name}" + ("" if stated else ", the strongest class")
+    utilisation = vdi2230.comparative_stress(thread, stated_preload.preload_force, thread_friction) / strength
+    bolt = f"{thread.thread_name}-{name}" + ("" if stated else ", the strongest class")
     allowed = vdi2230.assembly_preload(thread, strength, thread_friction)
-    if options["torque"] is not None:
+    if drawing_options["torque"] is not None:
         torque, lowest = (
-            parse_quantity("torque", options["torque"]).value,
+            parse_quantity("torque", drawing_options["torque"]).stated_value,
             QUANTITIES["preload"].plausible_range[0],
         )
-        if preload.force < lowest:
+        if stated_preload.preload_force < lowest:
             raise ValueError(
-                f"--torque = {options['torque']!r} tightens to {preload.force:.3g} N, plausible is at least "
-                f"{lowest:g} N; check the unit, as in {torque:g}kN.m"
+                f"--torque = {drawing_options['torque']!r} tightens to {stated_preload.preload_force:.3g} N, "
+                f"plausible is at least {lowest:g} N; check the unit, as in {torque:g}kN.m"
             )
         if utilisation > 1.0:
-            highest = torque * allowed / preload.force
+            highest = torque * allowed / stated_preload.preload_force
             advice = f"; check the unit, as in {torque:g}N.mm" if utilisation > 10.0 else ""
             raise ValueError(
-                f"--torque = {options['torque']!r} tightens to {preload.force * 1e-3:.4g} kN, "
-                f"{utilisation:.3g} times the yield strength of {bolt}; expected up to {highest:.3g} N.m "
-                f"(VDI 2230: {vdi2230.YIELD_UTILISATION:.0%}){advice}"
+                f"--torque = {drawing_options['torque']!r} tightens to "
+                f"{stated_preload.preload_force * 1e-3:.4g} kN, {utilisation:.3g} times the yield strength "
+                f"of {bolt}; expected up to {highest:.3g} N.m (VDI 2230: "
+                f"{vdi2230.YIELD_UTILISATION:.0%}){advice}"
             )
     if stated is None:
-        return preload
+        return stated_preload
     proof_load = property_class_strength(name, "proof", thread) * vdi2230.stress_area(thread)
     warnings = []
-    if preload.force <= proof_load and utilisation > vdi2230.YIELD_UTILISATION * (
-        1.0 + vdi2230.MAX_UTILISATION_ERROR
+    if stated_preload.preload_force <= proof_load and utilisation > vdi2230.YIELD_UTILISATION * (
+        1.0 + vdi2230.MAX_YIELD_UTILISATION_EXCESS
     ):
         warnings = [
-            f"preload = {preload.force:.4g} N uses {utilisation:.0%} of the yield strength of {bolt} in "
-            f"tightening (VDI 2230, von Mises), allowed are {vdi2230.YIELD_UTILISATION:.0%}: {allowed:.4g} N"
+            f"preload = {stated_preload.preload_force:.4g} N uses {utilisation:.0%} of the yield strength of "
+            f"{bolt} in tightening (VDI 2230, von Mises), allowed are {vdi2230.YIELD_UTILISATION:.0%}: "
+            f"{allowed:.4g} N"
         ]
-    source = f"{preload.source}; {vdi2230.describe_stated_bolt(thread.name, name)}"
-    return replace(preload, source=source, utilisation=utilisation, warnings=tuple(warnings))
+    source = f"{stated_preload.preload_source}; {vdi2230.describe_stated_bolt(thread.thread_name, name)}"
+    return replace(
+        stated_preload, preload_source=source, yield_utilisation=utilisation, preload_warnings=tuple(warnings)
+    )

@@ -23,15 +23,21 @@ def _make_records(
     """Make the Modelica records of a parameter file; the gear contact has one."""
     contact = GearContactSpring.tabulate(parameter_file.values)
     pressure = decimate_curve(contact.curve)
-    approach = pressure.rows[:, :1] - contact.curve.displacement[0]
+    approach = pressure.table_rows[:, :1] - contact.curve.displacement[0]
     table = InterpolationTable(
-        np.hstack([approach, contact.joint.A_0 * pressure.rows[:, 1:]]), pressure.max_error
+        np.hstack([approach, contact.joint.A_0 * pressure.table_rows[:, 1:]]), pressure.max_relative_error
     )
-    return [ModelicaRecord(name=make_identifier(parameter_file.name), title=parameter_file.name, table=table)]
+    return [
+        ModelicaRecord(
+            record_name=make_identifier(parameter_file.name),
+            record_title=parameter_file.name,
+            interpolation_table=table,
+        )
+    ]
 
 
 MODELICA_COMPONENT = ModelicaComponent(
-    name="GearContact",
+    component_name="GearContact",
     base_record="GearContact",
     make_records=_make_records,
     make_template_texts=lambda contact: {"end": f"{contact.max_load / 1e3:g} kN"},

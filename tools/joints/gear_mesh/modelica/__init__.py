@@ -12,7 +12,7 @@ from ....exchange.modelica.records import (
     WorkingPoint,
     decimate_curve,
     format_computed_values,
-    format_number,
+    format_double_literal,
     format_parameter_values,
     make_curve_of_table,
     make_identifier,
@@ -25,17 +25,21 @@ def _make_records(
     """Make the Modelica records of a parameter file; the gear mesh has one."""
     spring = GearMeshSpring.tabulate(parameter_file.values)
     table = decimate_curve(spring.curve)
-    energy = make_curve_of_table(table).energy(table.rows[:, 0])
+    energy = make_curve_of_table(table).energy(table.table_rows[:, 0])
     values = format_parameter_values(_wheel_parameters(spring.joint)) | format_computed_values(
-        {"closing": spring.closing_end}
+        {"closing": spring.closing_end_deflection}
     )
-    nodes = "{\n      " + ",\n      ".join(format_number(x, COMPUTED_DIGITS) for x in energy.tolist()) + "}"
+    nodes = (
+        "{\n      "
+        + ",\n      ".join(format_double_literal(x, COMPUTED_DIGITS) for x in energy.tolist())
+        + "}"
+    )
     return [
         ModelicaRecord(
-            name=make_identifier(parameter_file.name),
-            title=parameter_file.name,
-            table=table,
-            values={**values, "energy": nodes},
+            record_name=make_identifier(parameter_file.name),
+            record_title=parameter_file.name,
+            interpolation_table=table,
+            value_expressions={**values, "energy": nodes},
         )
     ]
 
@@ -47,7 +51,7 @@ def _wheel_parameters(mesh_parameters: MeshParameters) -> dict[str, float]:
 
 
 MODELICA_COMPONENT = ModelicaComponent(
-    name="GearMesh",
+    component_name="GearMesh",
     base_record="GearMesh",
     make_records=_make_records,
     make_template_texts=lambda mesh: {"end": f"{mesh.max_load / 1e3:g} kN"},

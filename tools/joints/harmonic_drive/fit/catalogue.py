@@ -23,21 +23,27 @@ from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.quantity import Array
 
 from ....inputs.catalogue import SourcedNumber
-from ....inputs.fitting.least_squares import EMPTY_SOLUTION, Solution, solve
-from ....inputs.fitting.outcome import FitFacts, FitResult, fitted_parameters, make_predictor, make_unknowns
-from ..catalogue import STIFFNESS_COLUMN_NAMES, TABLE_END_OVER_RATED_TORQUE
+from ....inputs.fitting.least_squares import SOLUTION_WITHOUT_UNKNOWNS, FitSolution, solve_least_squares
+from ....inputs.fitting.outcome import (
+    DerivedFitValues,
+    FitResult,
+    build_fitted_file,
+    make_fit_unknowns,
+    make_predictor,
+)
+from ..catalogue import MAX_OVER_RATED_TORQUE, STIFFNESS_COLUMN_NAMES
 from . import drive
-from .drive import CatalogueRow, angle_picture, stiffness, stiffness_picture
+from .drive import CatalogueRow, compute_stiffness, draw_stiffness_picture, draw_wind_up_picture
 
-FITTED_PARAMETERS = ("K_FTS0", "drive_scale", "zero_torque_pressure")
+DEFAULT_FITTED_PARAMETERS = ("K_FTS0", "drive_scale", "zero_torque_pressure")
 """Parameters of the law `hu2023` that are fitted."""
 EXTRA_FITTED_PARAMETER = "torque_smoothing"
-"""Parameter that is fitted too if FITTED_PARAMETERS alone do not meet the wind-up angles."""
-MAX_ANGLE_ERROR = 0.009
+"""Parameter that is fitted too if DEFAULT_FITTED_PARAMETERS alone do not meet the wind-up angles."""
+MAX_RELATIVE_ANGLE_ERROR = 0.009
 """Largest relative error [1] of the angle at T1, T2 and the rated torque: 1 % with a margin."""
 EXACT_ANGLE_STANDARD_DEVIATIONS = (2e-2, 1e-2, 5e-3, 2e-3, 1e-3, 5e-4)
 """Relative standard deviations [1] of the angle at T1, T2 and the rated torque. They are tried in turn until
-the fitted angles are within MAX_ANGLE_ERROR."""
+the fitted angles are within MAX_RELATIVE_ANGLE_ERROR."""
 OTHER_ANGLE_STANDARD_DEVIATION = 0.2
 """Relative standard deviation [1] of the angle at other torques: real drives have no corners."""
 
@@ -53,18 +59,18 @@ def fit(
 ) -> FitResult:
     """Make the parameters of a drive from a row of a catalogue.
 
-    fitted_names : names to fit, with the law `hu2023` only; None: those of FITTED_PARAMETERS
-    rated_torque : [N.m]; None: T2
+    fitted_names : names to fit, with the law `hu2023` only; None: those of DEFAULT_FITTED_PARAMETERS
+    rated_torque : [N.m]; None: the torque T2 of the row
     source       : where the row is published
     ratio        : speed ratio [1]; None: that of `start_parameters`
     law          : "catalogue" or "hu2023"
-    row          : K1, K2, K3 [N.m/rad], T1, T2 [N.m]
+    row          : K1, K2, K3 [N.m/rad], T1, T2 [N.m]: stiffness up to T1, from T1 to T2 and above T2
 
     Raises ValueError for numbers outside their limits or a name that cannot be fitted, RuntimeError if no law
-    `hu2023` meets the angles.
+    `hu2023` has the wind-up angles of the row.
     """
     rated, kind = (row["T2"], "estimate") if rated_torque is None else (rated_torque, "catalogue")
-    catalogue_row = CatalogueRow(**row, rated=rated)
+    catalogue_row = CatalogueRow(**row, rated_torque=rated)
     printed = make_sourced_numbers(catalogue_row, kind, ratio, source)
     return (make_drive_with_catalogue_law_from_row if law == "catalogue" else fit_contact_pair_law)(
         catalogue_row, start_parameters, fitted_names, printed, source
@@ -74,24 +80,28 @@ def fit(
 def make_sourced_numbers(
     catalogue_row: CatalogueRow,
     rated_torque_origin: str = "catalogue",
-    ratio: float | None = None,
-    source: str = "catalogue",
+    speed_ratio: float | None = None,
+    row_source: str = "catalogue",
 ) -> dict[str, SourcedNumber]:
     """Make the numbers of a catalogue row with their source: {parameter: number}.
 
     rated_torque_origin : origin of the rated torque: "catalogue" if it is published, else that of the
                           estimate T2
-    ratio               : speed ratio [1], added if it is known
-    source              : where the row is published
+    speed_ratio         : speed ratio [1], added if it is known
+    row_source          : where the row is published
     """
-    origin = f"{source} ({catalogue_row})"
+    origin = f"{row_source} ({catalogue_row})"
     rated = origin if rated_torque_origin == "catalogue" else "no rated torque given; T2 of the catalogue"
     numbers = {
         name: SourcedNumber(getattr(catalogue_row, name), "catalogue", origin)
         for name in STIFFNESS_COLUMN_NAMES
     }
-    numbers["rated_torque"] = SourcedNumber(catalogue_row.rated, rated_torque_origin, rated)
-    return numbers if ratio is None else numbers | {"ratio": SourcedNumber(ratio, "catalogue", origin)}
+    numbers["rated_torque"] = SourcedNumber(catalogue_row.rated_torque, rated_torque_origin, rated)
+    return (
+        numbers
+        if speed_ratio is None
+        else numbers | {"ratio": SourcedNumber(speed_ratio, "catalogue", origin)}
+    )
 
 
 def fit_contact_pair_law(
@@ -99,38 +109,39 @@ def fit_contact_pair_law(
     start_parameters: ParameterFile | None = None,
     fitted_names: Sequence[str] | None = None,
     sourced_numbers: Mapping[str, SourcedNumber] | None = None,
-    source: str = "catalogue",
+    row_source: str = "catalogue",
 ) -> FitResult:
     """Fit the smooth law of the contact pair to a row of a catalogue.
 
-    fitted_names    : names to fit; None: FITTED_PARAMETERS, and EXTRA_FITTED_PARAMETER if the others do not
-                      suffice
+    fitted_names    : names to fit; None: DEFAULT_FITTED_PARAMETERS, and EXTRA_FITTED_PARAMETER if the others
+                      do not suffice
     sourced_numbers : numbers of the row, from `make_sourced_numbers`; None: those of `catalogue_row`
-    source          : where the row is published
+    row_source      : where the row is published
 
-    Raises ValueError for a name that cannot be fitted, RuntimeError if no law meets the angles.
+    Raises ValueError for a name that cannot be fitted, RuntimeError if no law has the wind-up angles of the
+    row.
     """
     sourced_numbers = sourced_numbers or make_sourced_numbers(catalogue_row)
     file = start_parameters or load_default("harmonic_drive")
     rated = sourced_numbers["rated_torque"]
-    origin = sourced_numbers["T1"].source
-    file = drive.resize_drive(
-        file, catalogue_row.rated, TABLE_END_OVER_RATED_TORQUE, rated.origin, rated.source
+    origin = sourced_numbers["T1"].value_source
+    file = drive.change_rated_torque(
+        file, catalogue_row.rated_torque, MAX_OVER_RATED_TORQUE, rated.value_origin, rated.value_source
     )
     if "ratio" in sourced_numbers:
-        file = file.with_values({"ratio": sourced_numbers["ratio"].value}, "catalogue", origin)
+        file = file.with_values({"ratio": sourced_numbers["ratio"].si_value}, "catalogue", origin)
     file = file.with_values({EXTRA_FITTED_PARAMETER: catalogue_row.T1}, "catalogue", f"T1 of {origin}")
     torque, max_torque = comparison_torques(catalogue_row, file.values.max_torque), file.values.max_torque
     choices = (
         [tuple(fitted_names)]
         if fitted_names
-        else [FITTED_PARAMETERS, (*FITTED_PARAMETERS, EXTRA_FITTED_PARAMETER)]
+        else [DEFAULT_FITTED_PARAMETERS, (*DEFAULT_FITTED_PARAMETERS, EXTRA_FITTED_PARAMETER)]
     )
     file = drive.scale_stiffness(file, choices[0], torque, catalogue_row.wind_up(torque))
     solution, deviation = _fit_with_increasing_weight(catalogue_row, file, choices, torque)
-    result = fitted_parameters(file, solution.values, "catalogue", origin, f"torque 0 to {max_torque:g} N.m")
-    result = replace(result, name=f"fitted to {source}")
-    errors = drive.wind_up(result.values, torque) / catalogue_row.wind_up(torque) - 1.0
+    result = build_fitted_file(file, solution.values, "catalogue", origin, f"torque 0 to {max_torque:g} N.m")
+    result = replace(result, name=f"fitted to {row_source}")
+    errors = drive.compute_wind_up(result.values, torque) / catalogue_row.wind_up(torque) - 1.0
     worst = int(np.argmax(np.abs(errors)))
     text = f"at {torque[worst]:.3g} N.m, largest between {torque[0]:.3g} and {max_torque:g} N.m"
     facts = _angle_errors(catalogue_row, result.values, {})
@@ -140,16 +151,16 @@ def fit_contact_pair_law(
         f"{100 * OTHER_ANGLE_STANDARD_DEVIATION:g} % elsewhere"
     )
     pictures = (
-        angle_picture(catalogue_row, result.values, {}, torque),
-        stiffness_picture(catalogue_row, result.values, {}, max_torque),
+        draw_wind_up_picture(catalogue_row, result.values, {}, torque),
+        draw_stiffness_picture(catalogue_row, result.values, {}, max_torque),
     )
     return FitResult(
-        result, solution, facts | _max_torque_fact(catalogue_row, max_torque), pictures, notes=[note]
+        result, solution, facts | _describe_max_torque(catalogue_row, max_torque), pictures, notes=[note]
     )
 
 
 def comparison_torques(catalogue_row: CatalogueRow, max_torque: float) -> Array:
-    """Torques [N.m] up to about `max_torque` at which the smooth law is compared with the lines of a row."""
+    """Torques [N.m] up to about `max_torque` at which a fit compares the law with the catalogue's wind-up."""
     ends = np.array([0.0, catalogue_row.T1, catalogue_row.T2, max(max_torque, 1.5 * catalogue_row.T2)])
     samples = [np.linspace(a, b, 7)[1:] for a, b in pairwise(ends)]
     return np.unique(np.concatenate([catalogue_row.torques_of_exact_angles, *samples]))
@@ -159,8 +170,8 @@ def _fit_with_increasing_weight(
     catalogue_row: CatalogueRow,
     parameter_file: ParameterFile,
     sets_of_unknowns: Sequence[Sequence[str]],
-    torque: Array,
-) -> tuple[Solution, float]:
+    comparison_torques: Array,
+) -> tuple[FitSolution, float]:
     """Fit the contact pair with increasing weight of the angles at T1, T2 and rated torque, until they match.
 
     sets_of_unknowns : sets of unknowns to try in turn
@@ -168,20 +179,23 @@ def _fit_with_increasing_weight(
     Returns the solution and its relative standard deviation [1] of these angles. Raises RuntimeError if no
     fit meets them.
     """
-    exact, target = np.isin(torque, catalogue_row.torques_of_exact_angles), catalogue_row.wind_up(torque)
-    angles = make_predictor(parameter_file, lambda joint: drive.wind_up(joint, torque))
+    exact, target = (
+        np.isin(comparison_torques, catalogue_row.torques_of_exact_angles),
+        catalogue_row.wind_up(comparison_torques),
+    )
+    angles = make_predictor(parameter_file, lambda joint: drive.compute_wind_up(joint, comparison_torques))
     limits = dict(drive.parameter_bounds(parameter_file)) | {"K_FTS0": (catalogue_row.K2, np.inf)}
     best = np.inf
     for names, deviation in product(sets_of_unknowns, EXACT_ANGLE_STANDARD_DEVIATIONS):
         scale = np.where(exact, deviation, OTHER_ANGLE_STANDARD_DEVIATION)
-        solution = solve(
-            make_unknowns(parameter_file, names, limits),
+        solution = solve_least_squares(
+            make_fit_unknowns(parameter_file, names, limits),
             lambda values, scale=scale: (angles(values) / target - 1.0) / scale,  # type: ignore[misc]
-            noise=1.0,
-            tolerance=1e-5,
+            residual_deviation=1.0,
+            convergence_tolerance=1e-5,
         )
         worst = float(np.max(np.abs(solution.residuals * scale)[exact]))
-        if worst <= MAX_ANGLE_ERROR:
+        if worst <= MAX_RELATIVE_ANGLE_ERROR:
             return solution, deviation
         best = min(best, worst)
         parameter_file = parameter_file.with_values(
@@ -191,9 +205,8 @@ def _fit_with_increasing_weight(
         )
     raise RuntimeError(
         f"no law with {', '.join(sets_of_unknowns[-1])} free keeps the angle of {catalogue_row} at T1, T2 "
-        "and rated torque "
-        f"{catalogue_row.rated:g} N.m within {100 * MAX_ANGLE_ERROR:g} %: the best misses it by "
-        f"{100 * best:.2g} %"
+        f"and rated torque {catalogue_row.rated_torque:g} N.m within {100 * MAX_RELATIVE_ANGLE_ERROR:g} %: "
+        f"the best misses it by {100 * best:.2g} %; use the law catalogue"
     )
 
 
@@ -229,9 +242,9 @@ def make_drive_with_catalogue_law_from_row(
     start_parameters: ParameterFile | None = None,
     fitted_names: Sequence[str] | None = None,
     sourced_numbers: Mapping[str, SourcedNumber] | None = None,
-    source: str = "catalogue",
+    row_source: str = "catalogue",
 ) -> FitResult:
-    """Make a drive whose midline is the three lines of a catalogue row; no parameter is fitted.
+    """Make a drive whose curve without hysteresis is the three lines of a catalogue row; nothing is fitted.
 
     Arguments as for `fit_contact_pair_law`.
 
@@ -239,29 +252,31 @@ def make_drive_with_catalogue_law_from_row(
     """
     if fitted_names:
         raise ValueError("the law catalogue has nothing to fit; --free is allowed with --law hu2023")
-    max_torque = TABLE_END_OVER_RATED_TORQUE * catalogue_row.rated
-    largest = SourcedNumber(max_torque, "estimate", f"{TABLE_END_OVER_RATED_TORQUE:g} times rated_torque")
+    max_torque = MAX_OVER_RATED_TORQUE * catalogue_row.rated_torque
+    largest = SourcedNumber(max_torque, "estimate", f"{MAX_OVER_RATED_TORQUE:g} times rated_torque")
     file = make_drive_with_catalogue_law(
-        source,
+        row_source,
         {**(sourced_numbers or make_sourced_numbers(catalogue_row)), "max_torque": largest},
         start_parameters,
     )
     pair, note = _fit_contact_pair_law_or_note(
         catalogue_row, start_parameters if start_parameters and start_parameters.law == "hu2023" else None
     )
-    facts = _angle_errors(catalogue_row, file.values, {"max": max_torque}) | _max_torque_fact(
+    facts = _angle_errors(catalogue_row, file.values, {"max": max_torque}) | _describe_max_torque(
         catalogue_row, max_torque
     )
     also = {}
     if pair is not None:
         also = {CONTACT_PAIR_LAW_TEXT: pair}
-        facts |= _contact_pair_facts(catalogue_row, pair, max_torque)
-    angle = angle_picture(catalogue_row, file.values, also, comparison_torques(catalogue_row, max_torque))
+        facts |= _describe_contact_pair_errors(catalogue_row, pair, max_torque)
+    angle = draw_wind_up_picture(
+        catalogue_row, file.values, also, comparison_torques(catalogue_row, max_torque)
+    )
     return FitResult(
         file,
-        EMPTY_SOLUTION,
+        SOLUTION_WITHOUT_UNKNOWNS,
         facts,
-        (angle, stiffness_picture(catalogue_row, file.values, also, max_torque)),
+        (angle, draw_stiffness_picture(catalogue_row, file.values, also, max_torque)),
         notes=note,
     )
 
@@ -269,47 +284,49 @@ def make_drive_with_catalogue_law_from_row(
 def _fit_contact_pair_law_or_note(
     catalogue_row: CatalogueRow, start_parameters: ParameterFile | None
 ) -> tuple[DriveParameters | None, list[str]]:
-    """Fit the law of the contact pair to the angles of the row; None and a note if no fit meets them."""
+    """Fit the contact-pair law to a catalogue row; None and a note if no fit has its wind-up angles."""
     try:
         drive: DriveParameters = fit_contact_pair_law(catalogue_row, start_parameters).parameters.values
     except RuntimeError as error:
-        return None, [f"the {CONTACT_PAIR_LAW_TEXT} cannot be compared with it: {error}"]
+        return None, [
+            f"the {CONTACT_PAIR_LAW_TEXT} cannot be compared with the lines of the catalogue: {error}"
+        ]
     return drive, []
 
 
 def _angle_errors(
     catalogue_row: CatalogueRow, fitted_drive: DriveParameters, extra_torques: Mapping[str, float]
-) -> FitFacts:
-    """Relative errors of the wind-up by a fitted law at T1, T2, the rated torque, and extra torques [N.m]."""
+) -> DerivedFitValues:
+    """Relative errors [1] of a fitted law's wind-up at T1, T2, rated torque and extra torques [N.m]."""
     facts = {}
     for name, T in {
         "T1": catalogue_row.T1,
         "T2": catalogue_row.T2,
-        "rated": catalogue_row.rated,
+        "rated": catalogue_row.rated_torque,
         **extra_torques,
     }.items():
-        error = float(drive.wind_up(fitted_drive, np.array(T)) / catalogue_row.wind_up(T)) - 1.0
+        error = float(drive.compute_wind_up(fitted_drive, np.array(T)) / catalogue_row.wind_up(T)) - 1.0
         facts[f"angle_error_{name}"] = (error, "1", f"law over catalogue - 1 at {T:g} N.m")
     return facts
 
 
-def _max_torque_fact(catalogue_row: CatalogueRow, max_torque: float) -> FitFacts:
-    """Fact about the end of the fitted law: max_torque."""
-    text = f"{TABLE_END_OVER_RATED_TORQUE:g} times the rated torque {catalogue_row.rated:g} N.m"
+def _describe_max_torque(catalogue_row: CatalogueRow, max_torque: float) -> DerivedFitValues:
+    """Describe the largest torque of the fitted law, max_torque, for the user."""
+    text = f"{MAX_OVER_RATED_TORQUE:g} times the rated torque {catalogue_row.rated_torque:g} N.m"
     return {"max_torque": (max_torque, "N.m", text)}
 
 
-def _contact_pair_facts(
+def _describe_contact_pair_errors(
     catalogue_row: CatalogueRow, contact_pair_drive: DriveParameters, max_torque: float
-) -> FitFacts:
+) -> DerivedFitValues:
     """Largest errors of angle and stiffness of the contact-pair law, compared with the catalogue lines."""
     torque = np.linspace(0.0, max_torque, 401)[1:]
-    angle = drive.wind_up(contact_pair_drive, torque) / catalogue_row.wind_up(torque) - 1.0
+    angle = drive.compute_wind_up(contact_pair_drive, torque) / catalogue_row.wind_up(torque) - 1.0
     i = int(np.argmax(np.abs(angle)))
     text = f"{CONTACT_PAIR_LAW_TEXT} over catalogue - 1"
     facts = {"pair_angle_error": (float(angle[i]), "1", f"{text} at {torque[i]:.3g} N.m, the largest")}
-    for name, T in (("zero", 0.0), ("rated", catalogue_row.rated), ("max", max_torque)):
-        K, step = float(stiffness(contact_pair_drive, np.array(T))), float(catalogue_row.stiffness(T))
+    for name, T in (("zero", 0.0), ("rated", catalogue_row.rated_torque), ("max", max_torque)):
+        K, step = float(compute_stiffness(contact_pair_drive, np.array(T))), float(catalogue_row.stiffness(T))
         facts[f"pair_stiffness_{name}"] = (
             K / step - 1.0,
             "1",

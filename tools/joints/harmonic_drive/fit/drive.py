@@ -20,7 +20,7 @@ from jointfmu.quantity import Array, build_parameter_set, check_fields, flatten_
 from jointfmu.quantity.units import UnitSizes, conversion_factor, unit_sizes
 
 from ....inputs.catalogue import SourcedNumber
-from ....inputs.fitting.measurement import ColumnNames
+from ....inputs.fitting.measurement import MeasurementColumns
 from ....inputs.fitting.outcome import FitPlot
 
 STIFFNESS_PARAMETERS: Mapping[str, tuple[str, ...]] = {
@@ -28,11 +28,11 @@ STIFFNESS_PARAMETERS: Mapping[str, tuple[str, ...]] = {
     "catalogue": ("K1", "K2", "K3"),
 }
 """{law: parameters}; one factor on all of these scales K_WTS (Hu 2023, Eq. 46)."""
-MIN_ZERO_TORQUE_OVER_RATED_PRESSURE = 0.05
+MIN_ZERO_TORQUE_PRESSURE_OVER_RATED_PRESSURE = 0.05
 """Lower bound in a fit of the peak pressure at zero torque, over that at rated torque [1]."""
 
 
-WIND_UP_RANGE = (1e-5, 0.1)
+PLAUSIBLE_WIND_UP_RANGE = (1e-5, 0.1)
 """Plausible wind-up [rad] at rated torque: from a hundredth to a hundred times the usual 1e-3."""
 
 
@@ -41,36 +41,40 @@ COLUMN_UNITS: Mapping[str, UnitSizes] = {
     "angle": unit_sizes("rad", "mrad", "deg", "arcmin", "arcsec"),
 }
 """{column: {unit: size in SI}} of measured torque and wind-up."""
-COLUMN_NAMES = ColumnNames("torque", "angle", *COLUMN_UNITS.values())
+LOOP_COLUMN_NAMES = MeasurementColumns("torque", "angle", *COLUMN_UNITS.values())
 """Columns of torque and angle in a measured file, with their units."""
 RAD_PER_ARCMIN = COLUMN_UNITS["angle"]["arcmin"]
 """Size of an arc minute [rad]."""
 
 
-def wind_up(drive: DriveParameters, torque: Array) -> Array:
+def compute_wind_up(drive_parameters: DriveParameters, torque: Array) -> Array:
     """Wind-up (...) [rad] of a drive without hysteresis at torques (...) [N.m], equal to its FMU's output."""
-    return torque_curve(drive).odd_inverse(torque)
+    return torque_curve(drive_parameters).odd_inverse(torque)
 
 
-def resize_drive(
-    start_file: ParameterFile, rated_torque: float, max_torque_ratio: float, origin: str, source: str
+def change_rated_torque(
+    start_file: ParameterFile,
+    rated_torque: float,
+    max_over_rated_torque: float,
+    torque_origin: str,
+    torque_source: str,
 ) -> ParameterFile:
-    """Change the rated torque [N.m] of a drive; torque_smoothing changes in proportion.
+    """Change the rated torque [N.m] of a drive; its parameter `torque_smoothing` changes in proportion.
 
-    max_torque_ratio : new max_torque over the new rated torque [1]
-    origin, source   : origin and source of the new rated torque, for the parameter file
+    max_over_rated_torque        : new max_torque over the new rated torque [1]
+    torque_origin, torque_source : origin and source of the new rated torque, for the parameter file
 
     Raises ValueError if the rated torque is not positive and finite.
     """
     if not 0.0 < rated_torque < np.inf:
         raise ValueError(f"rated torque = {rated_torque:g} N.m is outside (0, inf): the drive's rated torque")
     drive = start_file.values
-    file = start_file.with_values({"rated_torque": rated_torque}, origin, source)
+    file = start_file.with_values({"rated_torque": rated_torque}, torque_origin, torque_source)
     if "max_torque" in file.values_by_name:
         file = file.with_values(
-            {"max_torque": max_torque_ratio * rated_torque},
+            {"max_torque": max_over_rated_torque * rated_torque},
             "estimate",
-            f"{max_torque_ratio:g} times rated_torque",
+            f"{max_over_rated_torque:g} times rated_torque",
         )
     if "torque_smoothing" not in file.values_by_name:
         return file
@@ -83,13 +87,16 @@ def resize_drive(
 
 
 def scale_stiffness(
-    start_file: ParameterFile, fitted_names: tuple[str, ...], torque: Array, angle: Array
+    start_file: ParameterFile, fitted_names: tuple[str, ...], measured_torques: Array, measured_angles: Array
 ) -> ParameterFile:
     """Scale the stiffness of the start parameters to a measured curve, angles (n) [rad] at torques (n) [N.m].
 
     `start_file` is returned unchanged unless all STIFFNESS_PARAMETERS of the law are among the names to fit.
     """
-    ratio = float(np.sum(wind_up(start_file.values, torque) * angle) / np.sum(angle**2))
+    ratio = float(
+        np.sum(compute_wind_up(start_file.values, measured_torques) * measured_angles)
+        / np.sum(measured_angles**2)
+    )
     level = {
         name: start_file.values_by_name[name] * ratio
         for name in STIFFNESS_PARAMETERS.get(start_file.law, ())
@@ -101,31 +108,31 @@ def scale_stiffness(
 
 def change_law(
     start_file: ParameterFile,
-    law_class: type[DriveParameters],
+    law_parameter_class: type[DriveParameters],
     parameter_set_name: str,
     sourced_numbers: Mapping[str, SourcedNumber],
-    copied_names: Sequence[str] = (),
+    copied_parameter_names: Sequence[str] = (),
 ) -> ParameterFile:
     """Change the law of a drive.
 
-    law_class          : parameter class of the new law
-    parameter_set_name : name of the parameter set in the new file
-    sourced_numbers    : {parameter: number with source} of the new law
-    copied_names       : parameters of the law of `start_file` to copy, in addition to those of all drives
+    law_parameter_class    : parameter class of the new law
+    parameter_set_name     : name of the parameter set in the new file
+    sourced_numbers        : {parameter: number with source} of the new law
+    copied_parameter_names : parameters of the law of `start_file` to copy, in addition to those of all drives
     """
     shared = [label for label, _ in flatten_fields(DriveParameters) if label in start_file.values_by_name] + [
-        *copied_names
+        *copied_parameter_names
     ]
     values = {label: start_file.values_by_name[label] for label in shared} | {
-        k: p.value for k, p in sourced_numbers.items()
+        k: p.si_value for k, p in sourced_numbers.items()
     }
     kinds = {k: v for k, v in start_file.origins.items() if k in shared} | {
-        k: p.origin for k, p in sourced_numbers.items()
+        k: p.value_origin for k, p in sourced_numbers.items()
     }
     sources = {k: v for k, v in start_file.sources.items() if k in shared}
-    sources |= {k: p.source for k, p in sourced_numbers.items()}
+    sources |= {k: p.value_source for k, p in sourced_numbers.items()}
     return ParameterFile(
-        start_file.joint, parameter_set_name, build_parameter_set(law_class, values), kinds, sources
+        start_file.joint, parameter_set_name, build_parameter_set(law_parameter_class, values), kinds, sources
     )
 
 
@@ -138,7 +145,7 @@ def parameter_bounds(start_file: ParameterFile) -> Mapping[str, tuple[float, flo
     if not isinstance(drive, ContactPairDriveParameters):
         return {}
     rated, loss = drive.rated_pressure, drive.peak_pressure_reduction
-    lowest = loss + MIN_ZERO_TORQUE_OVER_RATED_PRESSURE * rated
+    lowest = loss + MIN_ZERO_TORQUE_PRESSURE_OVER_RATED_PRESSURE * rated
     return {
         "zero_torque_pressure": (lowest, rated),
         "rated_pressure": (drive.zero_torque_pressure, np.inf),
@@ -146,26 +153,26 @@ def parameter_bounds(start_file: ParameterFile) -> Mapping[str, tuple[float, flo
     }
 
 
-STIFFNESS_UNITS = ("1e4 N.m/rad", "N.m/arcmin", "kN.m/rad", "kgf.m/arcmin", "N.m/mrad", "N.mm/rad")
+COMMON_STIFFNESS_UNITS = ("1e4 N.m/rad", "N.m/arcmin", "kN.m/rad", "kgf.m/arcmin", "N.m/mrad", "N.mm/rad")
 """Units of the stiffness in catalogues."""
 
 
-def _likely_unit_hint(angle: float) -> str:
-    """Hint which unit of the stiffness makes the wind-up at T2 [rad] closest to the usual one."""
-    typical = np.sqrt(np.prod(WIND_UP_RANGE))
-    sizes = {u: conversion_factor(u, "N.m/rad") for u in STIFFNESS_UNITS}
-    unit = min(sizes, key=lambda u: abs(np.log(angle / sizes[u] / typical)))
-    if not 0.1 < angle / sizes[unit] / typical < 10.0:
+def _likely_unit_hint(wind_up_at_T2: float) -> str:
+    """Text that names the unit of a stiffness column that makes the wind-up [rad] at torque T2 plausible."""
+    typical = np.sqrt(np.prod(PLAUSIBLE_WIND_UP_RANGE))
+    sizes = {u: conversion_factor(u, "N.m/rad") for u in COMMON_STIFFNESS_UNITS}
+    unit = min(sizes, key=lambda u: abs(np.log(wind_up_at_T2 / sizes[u] / typical)))
+    if not 0.1 < wind_up_at_T2 / sizes[unit] / typical < 10.0:
         return "no usual unit explains it"
     return f"likely they are in {unit}: times {sizes[unit]:g} (--stiffness-unit)"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CatalogueRow:
-    """Torsional stiffness and rated torque in a row of a catalogue.
+    """Torsional stiffness and rated torque in a catalogue row: K1 up to torque T1, K2 up to T2, K3 above.
 
     Raises ValueError if K1, K2, K3 or T1, T2 are not ascending, or if the wind-up at rated torque is outside
-    WIND_UP_RANGE.
+    PLAUSIBLE_WIND_UP_RANGE.
     """
 
     K1: float = quantity_field("N.m/rad", "stiffness below T1", gt=0.0)
@@ -173,7 +180,7 @@ class CatalogueRow:
     K3: float = quantity_field("N.m/rad", "stiffness above T2", gt=0.0)
     T1: float = quantity_field("N.m", "torque at the first corner", gt=0.0)
     T2: float = quantity_field("N.m", "torque at the second corner", gt=0.0)
-    rated: float = quantity_field("N.m", "rated torque", gt=0.0)
+    rated_torque: float = quantity_field("N.m", "rated torque", gt=0.0)
 
     def __post_init__(self) -> None:
         check_fields(self)
@@ -185,13 +192,13 @@ class CatalogueRow:
                 )
         if not self.T1 < self.T2:
             raise ValueError(f"T2 = {self.T2:g} N.m is outside ({self.T1:g}, inf): T2 exceeds T1")
-        least, most = WIND_UP_RANGE
-        angle, at_T2 = (float(self.wind_up(T)) for T in (self.rated, self.T2))
+        least, most = PLAUSIBLE_WIND_UP_RANGE
+        angle, at_T2 = (float(self.wind_up(T)) for T in (self.rated_torque, self.T2))
         if not least <= angle <= most:
             raise ValueError(
-                f"K1 = {self.K1:g} N.m/rad winds up {angle:.3g} rad at the rated torque {self.rated:g} N.m, "
-                f"allowed are {least:g} to {most:g} rad: are K1, K2 and K3 in N.m/rad? "
-                f"{_likely_unit_hint(at_T2)}"
+                f"K1 = {self.K1:g} N.m/rad winds up {angle:.3g} rad at the rated torque "
+                f"{self.rated_torque:g} N.m, allowed are {least:g} to {most:g} rad: are K1, K2 and K3 in "
+                f"N.m/rad? {_likely_unit_hint(at_T2)}"
             )
 
     def wind_up(self, torque: ArrayLike) -> Array:
@@ -208,7 +215,7 @@ class CatalogueRow:
     @property
     def torques_of_exact_angles(self) -> Array:
         """Torques T1, T2 and rated [N.m], ascending, at which a fitted law must meet the angle."""
-        return np.unique([self.T1, self.T2, self.rated])
+        return np.unique([self.T1, self.T2, self.rated_torque])
 
     def __str__(self) -> str:
         return (
@@ -217,60 +224,66 @@ class CatalogueRow:
         )
 
 
-_CURVE_POINTS = 400
+_CURVE_POINT_COUNT = 400
 """Number of points of a plotted curve [1]."""
 
 
-def stiffness(drive: DriveParameters, torque: Array) -> Array:
+def compute_stiffness(drive_parameters: DriveParameters, torque: Array) -> Array:
     """Stiffness K_WTS (...) [N.m/rad] of the FMU without hysteresis, at torques (...) >= 0 [N.m]."""
-    curve = torque_curve(drive)
+    curve = torque_curve(drive_parameters)
     return curve.derivatives(curve.inverse(torque), 1)[1]
 
 
-def angle_picture(
+def draw_wind_up_picture(
     catalogue_row: CatalogueRow,
     fitted_drive: DriveParameters,
-    other_drives: Mapping[str, DriveParameters],
-    torque: Array,
+    other_plotted_drives: Mapping[str, DriveParameters],
+    plotted_torques: Array,
 ) -> FitPlot:
-    """Plot of the wind-up of a drive at torques (n) [N.m]: catalogue, fitted law, and errors of the law.
+    """Plot of the wind-up of a drive at n torques [N.m]: catalogue, fitted law, and errors of the law.
 
-    other_drives : {name: further law to plot}
+    other_plotted_drives : {name in the legend: drive with another law}
     """
-    grid, target = np.linspace(0.0, torque[-1], _CURVE_POINTS), catalogue_row.wind_up(torque)
+    grid, target = (
+        np.linspace(0.0, plotted_torques[-1], _CURVE_POINT_COUNT),
+        catalogue_row.wind_up(plotted_torques),
+    )
     return FitPlot(
-        measured_x=torque,
+        measured_x=plotted_torques,
         measured_y=target / RAD_PER_ARCMIN,
-        misfit=100.0 * (target / wind_up(fitted_drive, torque) - 1.0),
-        law_curve=(grid, wind_up(fitted_drive, grid) / RAD_PER_ARCMIN),
+        misfit=100.0 * (target / compute_wind_up(fitted_drive, plotted_torques) - 1.0),
+        law_curve=(grid, compute_wind_up(fitted_drive, grid) / RAD_PER_ARCMIN),
         axis_labels=("torque [N.m]", "wind-up [arcmin]", "catalogue / law - 1 [%]"),
-        highlighted_points=np.isin(torque, catalogue_row.torques_of_exact_angles),
+        highlighted_points=np.isin(plotted_torques, catalogue_row.torques_of_exact_angles),
         other_laws={
-            name: (grid, wind_up(other, grid) / RAD_PER_ARCMIN) for name, other in other_drives.items()
+            name: (grid, compute_wind_up(other, grid) / RAD_PER_ARCMIN)
+            for name, other in other_plotted_drives.items()
         },
     )
 
 
-def stiffness_picture(
+def draw_stiffness_picture(
     catalogue_row: CatalogueRow,
     fitted_drive: DriveParameters,
-    other_drives: Mapping[str, DriveParameters],
+    other_plotted_drives: Mapping[str, DriveParameters],
     max_torque: float,
 ) -> FitPlot:
-    """Plot of the stiffness of a drive up to `max_torque` [N.m], without the corners of the catalogue lines.
+    """Plot of the stiffness of a drive up to `max_torque` [N.m]: catalogue, fitted law, errors of the law.
 
-    The plot shows catalogue, fitted law, and errors.
+    The torques T1 and T2, at which the catalogue's stiffness jumps, are left out.
 
-    other_drives : {name: further law to plot}
+    other_plotted_drives : {name in the legend: drive with another law}
     """
-    grid = np.linspace(0.0, max_torque, _CURVE_POINTS)
+    grid = np.linspace(0.0, max_torque, _CURVE_POINT_COUNT)
     torque = grid[1::2][~np.isin(grid[1::2], (catalogue_row.T1, catalogue_row.T2))]
     steps = catalogue_row.stiffness(torque)
     return FitPlot(
         measured_x=torque,
         measured_y=steps / 1e3,
-        misfit=100.0 * (steps / stiffness(fitted_drive, torque) - 1.0),
-        law_curve=(grid, stiffness(fitted_drive, grid) / 1e3),
+        misfit=100.0 * (steps / compute_stiffness(fitted_drive, torque) - 1.0),
+        law_curve=(grid, compute_stiffness(fitted_drive, grid) / 1e3),
         axis_labels=("torque [N.m]", "stiffness [kN.m/rad]", "catalogue / law - 1 [%]"),
-        other_laws={name: (grid, stiffness(other, grid) / 1e3) for name, other in other_drives.items()},
+        other_laws={
+            name: (grid, compute_stiffness(other, grid) / 1e3) for name, other in other_plotted_drives.items()
+        },
     )

@@ -22,66 +22,66 @@ from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.quantity import Array
 
 from ....inputs.fitting import hysteresis_fit
-from ....inputs.fitting.branches import Loops
+from ....inputs.fitting.branches import MeasuredLoops
 from ....inputs.fitting.hysteresis import HysteresisLaw, NonlinearSpring
-from ....inputs.fitting.least_squares import Solution, Unknown, solve
+from ....inputs.fitting.least_squares import FitSolution, Unknown, solve_least_squares
 from ....inputs.fitting.measurement import read_measurement
 from ....inputs.fitting.outcome import (
     FitPlot,
     FitResult,
-    fitted_parameters,
-    make_unknowns,
-    undetermined_names,
+    build_fitted_file,
+    find_undetermined_parameters,
+    make_fit_unknowns,
 )
 from . import drive
-from .drive import COLUMN_NAMES, RAD_PER_ARCMIN
-from .log_reading import Samples
+from .drive import LOOP_COLUMN_NAMES, RAD_PER_ARCMIN
+from .log_reading import LogSamples
 
-HYSTERESIS_LOSS_NAME, HYSTERESIS_STIFFNESS_NAME = FITTED_PARAMETERS = (
+HYSTERESIS_LOSS_NAME, HYSTERESIS_STIFFNESS_NAME = DEFAULT_FITTED_PARAMETERS = (
     "hysteresis_loss",
     "hysteresis_stiffness",
 )
 """Parameters of the hysteresis, which are fitted if the user names none."""
 DEFAULT_START_VALUES = {HYSTERESIS_LOSS_NAME: RAD_PER_ARCMIN, HYSTERESIS_STIFFNESS_NAME: 1.0}
 """Start values if the file has no hysteresis: loss [rad], and stiffness over K_WTS at zero torque [1]."""
-LOSS_START_VALUES = tuple(RAD_PER_ARCMIN * np.geomspace(0.03, 10.0, 7))
+HYSTERESIS_LOSS_START_VALUES = tuple(RAD_PER_ARCMIN * np.geomspace(0.03, 10.0, 7))
 """Further start values of the hysteresis loss [rad]."""
 HYSTERESIS_STIFFNESS_STARTS_OVER_DRIVE_STIFFNESS = (0.3, 1.0, 3.0, 10.0)
 """Start values of the hysteresis stiffness over K_WTS at zero torque [1], besides the value in the file."""
 
 
-def make_law(drive: DriveParameters) -> HysteresisLaw:
-    """Make the hysteresis law of a drive, with midline and friction torque as in its FMU.
+def make_hysteresis_law(drive_parameters: DriveParameters) -> HysteresisLaw:
+    """Make the hysteresis law of a drive: midline (elastic torque) and friction torque as in its FMU.
 
     Raises ValueError if the parameters allow no such hysteresis.
     """
-    spring = HarmonicDriveSpring.tabulate(drive)
+    spring = HarmonicDriveSpring.tabulate(drive_parameters)
     stiffness, limit = spring.hysteresis.stiffness, spring.hysteresis.friction_limit
     curve = spring.curve
 
-    def friction_torque(motion: Array) -> Array:
+    def friction_torque(wind_up: Array) -> Array:
         """Friction torque [N.m] in first loading at wind-ups [rad]."""
-        return np.asarray(np.sum(np.minimum(stiffness * motion[..., None], limit), axis=-1))
+        return np.asarray(np.sum(np.minimum(stiffness * wind_up[..., None], limit), axis=-1))
 
-    def friction_work(motion: Array) -> Array:
+    def friction_work(wind_up: Array) -> Array:
         """Work [J] of the friction torque in first loading up to wind-ups [rad]."""
-        stuck = np.minimum(motion[..., None], limit / stiffness)
-        return np.asarray(np.sum(0.5 * stiffness * stuck**2 + limit * (motion[..., None] - stuck), axis=-1))
+        stuck = np.minimum(wind_up[..., None], limit / stiffness)
+        return np.asarray(np.sum(0.5 * stiffness * stuck**2 + limit * (wind_up[..., None] - stuck), axis=-1))
 
-    def elastic_force(motion: Array) -> Array:
+    def elastic_force(wind_up: Array) -> Array:
         """Torque [N.m] of the midline at wind-ups [rad] of either sign."""
-        return np.copysign(curve.derivatives(np.abs(motion), 0)[0], motion)
+        return np.copysign(curve.derivatives(np.abs(wind_up), 0)[0], wind_up)
 
     return HysteresisLaw(
         friction_torque,
         friction_work,
         NonlinearSpring(elastic_force, lambda motion: curve.energy(np.abs(motion))),
-        drive.d,
+        drive_parameters.d,
     )
 
 
 def fit(
-    path: str | Path,
+    data_path: str | Path,
     start_parameters: ParameterFile | None = None,
     fitted_names: Sequence[str] | None = None,
     inertia: float | None = None,
@@ -91,42 +91,46 @@ def fit(
     Parameters
     ----------
     start_parameters : parameters to start from; None: the default drive
-    fitted_names     : names to fit; None: FITTED_PARAMETERS
+    fitted_names     : names to fit; None: DEFAULT_FITTED_PARAMETERS
     inertia          : [kg.m2] that vibrates on the drive; required unless the file has loops
 
     Raises ValueError with a one-line message for a bad file, unit or value, a loop that creates energy, or a
     name that cannot be fitted. Raises RuntimeError if the fit does not converge.
     """
-    data = read_measurement(path, COLUMN_NAMES)
-    names = list(fitted_names or FITTED_PARAMETERS)
+    data = read_measurement(data_path, LOOP_COLUMN_NAMES)
+    names = list(fitted_names or DEFAULT_FITTED_PARAMETERS)
     start_file = start_parameters or load_default("harmonic_drive")
-    if isinstance(data.data, Loops):
-        reach = 0.5 * float(np.ptp(data.data.force))
-        wind_up = float(drive.wind_up(start_file.values, np.array(reach)))
-        COLUMN_NAMES.check_stiffness_ratio(data.path, wind_up / data.amplitude, data.stated_units, start_file)
+    if isinstance(data.measured_data, MeasuredLoops):
+        reach = 0.5 * float(np.ptp(data.measured_data.joint_force))
+        wind_up = float(drive.compute_wind_up(start_file.values, np.array(reach)))
+        LOOP_COLUMN_NAMES.check_stiffness_ratio(
+            data.measurement_path, wind_up / data.largest_amplitude, data.stated_units, start_file
+        )
     file, rest = _set_start_hysteresis(start_file, names)
 
     def make_law_with_values(parameter_values: Mapping[str, float]) -> HysteresisLaw:
         """Make the hysteresis law of the drive for values of the fitted parameters."""
-        return make_law(file.with_values(parameter_values, "calibration", "fit").values)
+        return make_hysteresis_law(file.with_values(parameter_values, "calibration", "fit").values)
 
-    model = hysteresis_fit.build_model(data, make_law_with_values, "inertia", inertia, 0.0)
+    model = hysteresis_fit.build_measurement_model(data, make_law_with_values, "inertia", inertia, 0.0)
     starts = {
-        HYSTERESIS_LOSS_NAME: LOSS_START_VALUES,
+        HYSTERESIS_LOSS_NAME: HYSTERESIS_LOSS_START_VALUES,
         HYSTERESIS_STIFFNESS_NAME: tuple(rest * np.array(HYSTERESIS_STIFFNESS_STARTS_OVER_DRIVE_STIFFNESS)),
     }
     solution, scale, _ = hysteresis_fit.fit_measurement(
-        data, make_unknowns(file, names, drive.parameter_bounds(file)), model, starts
+        data, make_fit_unknowns(file, names, drive.parameter_bounds(file)), model, starts
     )
-    result = fitted_parameters(file, solution.values, "calibration", data.path.name, data.range_text)
-    fitted_law = make_law(result.values)
+    result = build_fitted_file(
+        file, solution.values, "calibration", data.measurement_path.name, data.describe_range
+    )
+    fitted_law = make_hysteresis_law(result.values)
     limit = float(fitted_law.friction_force(np.array([np.inf]))[0])
     law_facts = {"friction_torque": (limit, "N.m", "bound of the friction torque")}
     return FitResult(
         result,
         solution,
         law_facts | hysteresis_fit.summarize_fit(data, solution, fitted_law, scale),
-        hysteresis_fit.make_plots(data, model, solution.values, scale),
+        hysteresis_fit.make_fit_plots(data, model, solution.values, scale),
         notes=hysteresis_fit.list_misfit_notes(data, solution),
     )
 
@@ -134,7 +138,7 @@ def fit(
 def _set_start_hysteresis(
     parameter_file: ParameterFile, fitted_names: Sequence[str]
 ) -> tuple[ParameterFile, float]:
-    """Set non-zero hysteresis in the start parameters; also returns K_WTS [N.m/rad] at zero torque.
+    """Set non-zero hysteresis in the start parameters; also returns the stiffness [N.m/rad] at zero torque.
 
     The fit needs non-zero values, because its unknowns are logarithms.
     """
@@ -151,9 +155,9 @@ def _set_start_hysteresis(
     return parameter_file.with_values(absent, "calibration", "start"), rest
 
 
-STIFFNESS_NAMES = ("K1", "K2", "K3")
+STIFFNESS_PARAMETER_NAMES = ("K1", "K2", "K3")
 """Stiffnesses of the law `catalogue`. The fit to a log needs this law."""
-ROBOT_LOG_FITTED_PARAMETERS = (*STIFFNESS_NAMES, HYSTERESIS_LOSS_NAME)
+ROBOT_LOG_FITTED_PARAMETERS = (*STIFFNESS_PARAMETER_NAMES, HYSTERESIS_LOSS_NAME)
 """Parameters that `fit_robot_log` can fit."""
 ROTOR_INERTIA_NAME = "motor_inertia"
 """Name of the unknown inertia of the rotor, which is fitted if the user does not state it."""
@@ -161,14 +165,16 @@ DEFAULT_HYSTERESIS_LOSS = 0.3 * RAD_PER_ARCMIN
 """Start value of hysteresis_loss [rad] if the file has no hysteresis."""
 LOWER_BOUND_OVER_START_VALUE = 1e-2
 """Lower bound of hysteresis loss and of rotor inertia, over their start values [1]."""
-IGNORED_FIRST_SAMPLES = 10
+IGNORED_FIRST_SAMPLE_COUNT = 10
 """Number of first samples that are ignored, because the history of the hysteresis is unknown there."""
 
 
-def measured_wind_up(samples: Samples, speed_ratio: float) -> Array:
+def measured_wind_up(log_samples: LogSamples, speed_ratio: float) -> Array:
     """Wind-up (n) [rad] between joint and motor, minus its mean. The motor angle may have either sign."""
-    sense = np.sign(np.dot(samples.q - samples.q.mean(), samples.motor_angle - samples.motor_angle.mean()))
-    angle = samples.q - sense * samples.motor_angle / abs(speed_ratio)
+    sense = np.sign(
+        np.dot(log_samples.q - log_samples.q.mean(), log_samples.motor_angle - log_samples.motor_angle.mean())
+    )
+    angle = log_samples.q - sense * log_samples.motor_angle / abs(speed_ratio)
     return np.asarray(angle - angle.mean())
 
 
@@ -176,15 +182,16 @@ def fit_rotor_inertia(
     parameter_file: ParameterFile,
     wind_ups: Array,
     torques: Array,
-    torque_changes: Array,
+    torque_errors: Array,
     torque_per_inertia: Array,
     max_inertia: float,
 ) -> tuple[float, float] | None:
     """Fit the inertia of the rotor to measured wind-ups (n) [rad].
 
-    torques, torque_changes : as in `fit_robot_log`, for a rotor without inertia
-    torque_per_inertia      : (n) [N.m/(kg.m2)] change of the torque by the inertia of the rotor
-    max_inertia             : [kg.m2] upper bound: the total inertia belongs to the rotor
+    torques                : (n) [N.m] that cause the wind-ups, for a rotor without inertia
+    torque_errors          : (k, n) [N.m] change of the torques by each of k independent errors
+    torque_per_inertia     : (n) [N.m/(kg.m2)] change of the torque by the inertia of the rotor
+    max_inertia            : [kg.m2] upper bound: the total inertia belongs to the rotor
 
     Returns inertia and standard deviation [kg.m2]; None if the data do not determine them. Raises
     RuntimeError if the fit does not converge.
@@ -202,13 +209,13 @@ def fit_rotor_inertia(
         names,
         wind_ups,
         lambda values: torques + values[ROTOR_INERTIA_NAME] * torque_per_inertia,
-        torque_changes,
+        torque_errors,
         [unknown],
     )
     inertia = solution.values[ROTOR_INERTIA_NAME]
     return (
         None
-        if ROTOR_INERTIA_NAME in undetermined_names(solution)
+        if ROTOR_INERTIA_NAME in find_undetermined_parameters(solution)
         else (inertia, inertia * solution.relative_deviations[ROTOR_INERTIA_NAME])
     )
 
@@ -218,18 +225,18 @@ def fit_robot_log(
     fitted_names: Sequence[str],
     wind_ups: Array,
     torques: Array,
-    torque_changes: Array,
-) -> tuple[Solution, FitPlot]:
+    torque_errors: Array,
+) -> tuple[FitSolution, FitPlot]:
     """Fit stiffness and hysteresis to measured wind-ups (n) [rad] at torques (n) [N.m].
 
-    fitted_names   : names of the fitted parameters, some of ROBOT_LOG_FITTED_PARAMETERS
-    torque_changes : (k, n) [N.m] change of the torques by each of k independent errors of the load, of one
-                     standard deviation each; their effect is added to the covariance of the fit
+    fitted_names  : names of the fitted parameters, some of ROBOT_LOG_FITTED_PARAMETERS
+    torque_errors : (k, n) [N.m] change of the torques by each of k independent errors of the load, of one
+                    standard deviation each; their effect is added to the covariance of the fit
 
     Raises RuntimeError if the fit does not converge.
     """
     solution, law = _fit_wind_ups(
-        parameter_file, fitted_names, wind_ups, lambda values: torques, torque_changes
+        parameter_file, fitted_names, wind_ups, lambda values: torques, torque_errors
     )
     labels = "torque at the joint [N m]", "wind-up [arcmin]", "log - law [arcmin]"
     return solution, FitPlot(
@@ -245,17 +252,17 @@ def _fit_wind_ups(
     parameter_file: ParameterFile,
     fitted_names: Sequence[str],
     wind_ups: Array,
-    torque: Callable[[Mapping[str, float]], Array],
-    torque_changes: Array,
+    torque_function: Callable[[Mapping[str, float]], Array],
+    torque_errors: Array,
     extra_unknowns: Sequence[Unknown] = (),
-) -> tuple[Solution, Array]:
+) -> tuple[FitSolution, Array]:
     """Fit stiffness and hysteresis of a drive to wind-ups (n) [rad].
 
     Returns the solution and the wind-up (n) [rad] of the law.
 
-    torque         : {name: value} -> torque (n) [N.m]
-    torque_changes : as in `fit_robot_log`
-    extra_unknowns : unknowns on which the torque depends
+    torque_function : {name: value} -> torque (n) [N.m]
+    torque_errors   : as in `fit_robot_log`
+    extra_unknowns  : unknowns on which the torque depends
     """
     begin = (
         {HYSTERESIS_LOSS_NAME: DEFAULT_HYSTERESIS_LOSS}
@@ -268,16 +275,16 @@ def _fit_wind_ups(
     path = wind_ups - wind_ups[0]
 
     def law_wind_up(parameter_values: Mapping[str, float], torques: Array) -> Array:
-        """Wind-up (n) [rad] of the law, shifted to the mean of the measured one."""
+        """Wind-up (n) [rad] by the hysteresis law, shifted to the mean of the measured wind-up."""
         own_values = {name: parameter_values[name] for name in fitted_names}
         spring = HarmonicDriveSpring.tabulate(
             parameter_file.with_values(own_values, "calibration", "fit").values
         )
         wind_up_values = spring.curve.odd_inverse(torques - _hysteresis_torque(spring, path))
-        return np.asarray(wind_up_values - np.mean((wind_up_values - wind_ups)[IGNORED_FIRST_SAMPLES:]))
+        return np.asarray(wind_up_values - np.mean((wind_up_values - wind_ups)[IGNORED_FIRST_SAMPLE_COUNT:]))
 
     all_unknowns = [
-        *make_unknowns(
+        *make_fit_unknowns(
             start,
             fitted_names,
             {
@@ -289,15 +296,15 @@ def _fit_wind_ups(
         ),
         *extra_unknowns,
     ]
-    solution = solve(
+    solution = solve_least_squares(
         all_unknowns,
-        lambda values: (wind_ups - law_wind_up(values, torque(values)))[IGNORED_FIRST_SAMPLES:],
+        lambda values: (wind_ups - law_wind_up(values, torque_function(values)))[IGNORED_FIRST_SAMPLE_COUNT:],
         nuisance_count=1,
     )
-    fitted_torque = torque(solution.values)
+    fitted_torque = torque_function(solution.values)
     law = law_wind_up(solution.values, fitted_torque)
-    for change in torque_changes:
-        difference = (law_wind_up(solution.values, fitted_torque + change) - law)[IGNORED_FIRST_SAMPLES:]
+    for change in torque_errors:
+        difference = (law_wind_up(solution.values, fitted_torque + change) - law)[IGNORED_FIRST_SAMPLE_COUNT:]
         parameter_changes = np.linalg.lstsq(solution.jacobian, difference)[0]
         solution = replace(
             solution, covariance=solution.covariance + np.outer(parameter_changes, parameter_changes)
@@ -305,10 +312,10 @@ def _fit_wind_ups(
     return solution, law
 
 
-def _hysteresis_torque(spring: HarmonicDriveSpring, wind_up_path: Array) -> Array:
+def _hysteresis_torque(drive_spring: HarmonicDriveSpring, wind_up_path: Array) -> Array:
     """Friction torque (n) [N.m] of the hysteresis along wind-ups (n) [rad], starting at rest."""
-    sliders = spring.hysteresis
-    if not sliders.is_active:
+    sliders = drive_spring.hysteresis
+    if not sliders.has_friction:
         return np.zeros(wind_up_path.size)
     path_with_turns, sampled = _insert_turning_points(wind_up_path)
     return sliders.follow_increments(np.diff(path_with_turns, prepend=0.0), sliders.friction_limit)[sampled]

@@ -21,70 +21,76 @@ from jointfmu.joints.harmonic_drive.friction import REFERENCE_TEMPERATURE, frict
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
-from ....inputs.fitting.least_squares import Solution, covariance, solve
-from ....inputs.fitting.outcome import make_unknowns
-from .log_reading import Samples
+from ....inputs.fitting.least_squares import FitSolution, parameter_covariance, solve_least_squares
+from ....inputs.fitting.outcome import make_fit_unknowns
+from .log_reading import LogSamples
 
 
 @dataclass(frozen=True, slots=True)
 class LinearTorqueTerms:
     """Terms of the motor torque that are linear in their unknowns: inertia, offset, gravity.
 
-    design_matrix    : (n, k) motor torque at the samples per unit of each unknown
-    measured_load    : (n) [N.m] motor torque that balances the torque of the sensor at the joint, or else the
-                       measured gravity; 0 if neither is measured
-    unknown_names    : names (k) of the unknowns
+    design_matrix        : (n, k) motor torque at n samples per unit of each of k unknowns
+    measured_load_torque : (n) [N.m] motor torque that balances the torque of the sensor at the joint, or
+                           else the measured gravity; 0 if neither is measured
+    unknown_names        : names (k) of the unknowns
     """
 
     design_matrix: Array
-    measured_load: Array
+    measured_load_torque: Array
     unknown_names: tuple[str, ...]
 
     @classmethod
-    def evaluate_at_samples(cls, samples: Samples, speed_ratio: float) -> "LinearTorqueTerms":
-        """Evaluate the linear terms of the motor torque at samples of logs, for a speed ratio > 0."""
+    def evaluate_at_samples(cls, log_samples: LogSamples, speed_ratio: float) -> "LinearTorqueTerms":
+        """Evaluate inertia, offset and gravity terms of the motor torque at samples; speed ratio > 0."""
         columns: dict[str, Array] = {}
-        dynamic = samples.is_of_dynamic_log.astype(float)
-        measured_load = samples.sensor_torque if samples.has_sensor else samples.gravity_torque
+        dynamic = log_samples.is_of_dynamic_log.astype(float)
+        measured_load = (
+            log_samples.sensor_torque if log_samples.has_joint_torque_sensor else log_samples.gravity_torque
+        )
         measured = np.isfinite(measured_load)
         if dynamic.any():
-            columns = {"inertia": samples.ddq / speed_ratio, "offset": dynamic}
-            swung = dynamic * np.isfinite(samples.q) * ~measured
+            columns = {"inertia": log_samples.ddq / speed_ratio, "offset": dynamic}
+            swung = dynamic * np.isfinite(log_samples.q) * ~measured
             if swung.any():
-                angle = np.where(np.isfinite(samples.q), samples.q, 0.0)
+                angle = np.where(np.isfinite(log_samples.q), log_samples.q, 0.0)
                 columns |= {
                     "gravity_cos": swung * np.cos(angle) / speed_ratio,
                     "gravity_sin": swung * np.sin(angle) / speed_ratio,
                 }
-        columns |= {f"ripple_{number}": column for number, column in enumerate(samples.ripple_terms.T.copy())}
-        matrix = np.stack([*columns.values()], axis=1) if columns else np.zeros((samples.dq.size, 0))
+        columns |= {
+            f"ripple_{number}": column for number, column in enumerate(log_samples.ripple_terms.T.copy())
+        }
+        matrix = np.stack([*columns.values()], axis=1) if columns else np.zeros((log_samples.dq.size, 0))
         known = np.where(measured, measured_load, 0.0) / speed_ratio
         return cls(matrix, known, tuple(columns))
 
-    def solve_unknowns(self, torque: Array) -> Array:
-        """Solve for the linear unknowns (k) by least squares, from the torque (n) [N.m] without friction."""
+    def solve_linear_unknowns(self, frictionless_torque: Array) -> Array:
+        """Solve for inertia, offset and gravity (k) by least squares, from motor torques without friction."""
         return (
-            np.asarray(np.linalg.lstsq(self.design_matrix, torque)[0]) if self.unknown_names else np.zeros(0)
+            np.asarray(np.linalg.lstsq(self.design_matrix, frictionless_torque)[0])
+            if self.unknown_names
+            else np.zeros(0)
         )
 
     def tooth_load(
-        self, samples: Samples, linear_unknowns: Array, speed_ratio: float, rotor_inertia: float
+        self, log_samples: LogSamples, linear_unknowns: Array, speed_ratio: float, rotor_inertia: float
     ) -> Array:
         """Load (n) [N.m] of the teeth: torque of the drive on the arm, positive in the direction of q.
 
         rotor_inertia : [kg.m2]
         """
-        if samples.has_sensor:
-            return samples.sensor_torque
+        if log_samples.has_joint_torque_sensor:
+            return log_samples.sensor_torque
         values = dict(zip(self.unknown_names, linear_unknowns.tolist(), strict=True))
         arm = max(values.get("inertia", 0.0) - rotor_inertia * speed_ratio**2, 0.0)
         gravity = [n for n, name in enumerate(self.unknown_names) if name.startswith("gravity")]
         fitted_gravity = speed_ratio * self.design_matrix[:, gravity] @ linear_unknowns[gravity]
-        return np.asarray(arm * samples.ddq + fitted_gravity + speed_ratio * self.measured_load)
+        return np.asarray(arm * log_samples.ddq + fitted_gravity + speed_ratio * self.measured_load_torque)
 
 
 def motor_friction(
-    drive: DriveParameters, joint_speed: Array, temperature: Array, tooth_load: Array
+    drive_parameters: DriveParameters, joint_speed: Array, temperature: Array, tooth_load: Array
 ) -> Array:
     """Friction torque (...) [N.m] at the motor, of a moving drive.
 
@@ -92,18 +98,24 @@ def motor_friction(
     temperature : (...) [K] of the lubricant; NaN: reference temperature of the parameters
     tooth_load  : (...) [N.m] of the teeth, at the joint
     """
-    forward = replace(drive, ratio=abs(drive.ratio))
+    forward = replace(drive_parameters, ratio=abs(drive_parameters.ratio))
     warmth = np.where(np.isfinite(temperature), temperature, REFERENCE_TEMPERATURE)
     w1 = forward.ratio * joint_speed
     positive, negative = friction_limits(forward, w1, -tooth_load, warmth)
     return np.asarray(np.where(w1 > 0.0, positive, -negative) + viscous_torque(forward, w1, warmth))
 
 
-def filtered_motor_friction(drive: DriveParameters, samples: Samples, tooth_load: Array) -> Array:
+def filtered_motor_friction(
+    drive_parameters: DriveParameters, log_samples: LogSamples, tooth_load: Array
+) -> Array:
     """Friction torque (n) [N.m] at samples, smoothed by the filter of the log."""
-    warmth, carried = samples.temperature[:, None], tooth_load[:, None]
+    warmth, carried = log_samples.temperature[:, None], tooth_load[:, None]
     return np.asarray(
-        np.sum(samples.window_weights * motor_friction(drive, samples.window_speeds, warmth, carried), axis=1)
+        np.sum(
+            log_samples.window_weights
+            * motor_friction(drive_parameters, log_samples.window_speeds, warmth, carried),
+            axis=1,
+        )
     )
 
 
@@ -117,7 +129,7 @@ LOAD_LOSS_NAME, BACK_DRIVING_LOSS_NAME = "load_loss", "load_loss_back"
 """Names of the parameters: loss [1] of the transmitted torque if the motor drives, and if the load drives."""
 TEMPERATURE_COEFFICIENT_NAMES = ("viscous_temperature_coefficient", "dry_temperature_coefficient")
 """Parameters of the change of friction with temperature."""
-FITTED_PARAMETERS = (
+FITTABLE_FRICTION_PARAMETERS = (
     DRY_FRICTION_NAME,
     STRIBECK_FRICTION_NAME,
     VISCOUS_FRICTION_NAME,
@@ -126,19 +138,19 @@ FITTED_PARAMETERS = (
     *TEMPERATURE_COEFFICIENT_NAMES,
 )
 """Parameters of the friction that can be fitted."""
-LOAD_ITERATION_COUNT, LOAD_TOLERANCE = 4, 1e-4
+LOAD_ITERATION_COUNT, RELATIVE_LOAD_TOLERANCE = 4, 1e-4
 """Largest number of fits, each with the load that follows from the fit before; and change of the load over
 its size [1] at which the fits end."""
-FIT_TOLERANCE = 1e-6
+RELATIVE_FIT_TOLERANCE = 1e-6
 """Relative change of cost or parameters at which a fit ends [1]; far below the deviations of a log."""
-FIRST_FIT_SAMPLES = 1000
+FIRST_FIT_SAMPLE_COUNT = 1000
 """Approximate number of samples of a long log for a first fit, whose result is the start of the fit to all
 samples."""
 MIN_TEMPERATURE_RANGE = 5.0
 """Range of temperatures [K] that a log needs for a fit of the temperature coefficients."""
 MIN_LOAD_OVER_RATED_TORQUE = 0.02
 """Largest load of a log over the rated torque [1], from which load-dependent losses are fitted."""
-START_VALUES = {
+FRICTION_START_VALUES = {
     LOAD_LOSS_NAME: 0.05,
     BACK_DRIVING_LOSS_NAME: 0.05,
     TEMPERATURE_COEFFICIENT_NAMES[0]: 0.02,
@@ -147,13 +159,13 @@ START_VALUES = {
 """Start values if the file has 0: losses [1], temperature coefficients [1/K]."""
 LOWER_BOUND_OVER_START_VALUE = 1e-3
 """Lower bound of a fitted parameter over its start value [1]."""
-UNDETERMINED_DEVIATION_FACTOR, MAX_RESIDUAL_INCREASE = 2.0, 2.0
+UNDETERMINED_DEVIATION_FACTOR, MAX_REFIT_RESIDUAL_INCREASE = 2.0, 2.0
 """Standard deviation of a parameter, as a factor [1], above which it may be undetermined; and increase of the
 residual, in standard deviations for each such parameter [1], up to which the values of the file fit as
 well."""
 VANISHING_PARAMETERS = (STRIBECK_FRICTION_NAME, VISCOUS_FRICTION_NAME)
 """Parameters that a log may show to be 0: the fit ends on their lower bound."""
-MIN_FRICTION_DEVIATIONS, MIN_FRICTION_SHARE = 5.0, 0.02
+MIN_FRICTION_OVER_STANDARD_DEVIATION, MIN_FRICTION_TORQUE_SHARE = 5.0, 0.02
 """Friction over its standard deviation [1], and over the root mean square of the torque [1], from which a
 torque at the joint has the friction of the drive."""
 FINITE_DIFFERENCE_STEP = 1e-4
@@ -164,18 +176,18 @@ FINITE_DIFFERENCE_STEP = 1e-4
 class FittedLogFriction:
     """Friction model fitted to the samples of logs.
 
-    drive                   : drive with the fitted friction
-    solution                : solution of the fit of the friction parameters
-    linear_unknowns         : (k) unknowns of the linear terms: inertia [kg.m2], offset, gravity [N.m]
-    covariance              : (k, k) of the linear unknowns
-    rotor_inertia           : [kg.m2]
-    rotor_inertia_deviation : [kg.m2] standard deviation of the rotor inertia
+    fitted_drive              : drive with the fitted friction
+    friction_solution         : solution of the fit of the friction parameters
+    linear_unknowns           : (k) unknowns of the linear terms: inertia [kg.m2], offset, gravity [N.m]
+    linear_unknown_covariance : (k, k) of the linear unknowns
+    rotor_inertia             : [kg.m2]
+    rotor_inertia_deviation   : [kg.m2] standard deviation of the rotor inertia
     """
 
-    drive: DriveParameters
-    solution: Solution
+    fitted_drive: DriveParameters
+    friction_solution: FitSolution
     linear_unknowns: Array
-    covariance: Array
+    linear_unknown_covariance: Array
     rotor_inertia: float
     rotor_inertia_deviation: float
 
@@ -187,48 +199,51 @@ class FittedLogFriction:
         """
         return float(self.linear_unknowns[0])
 
-    def evaluate_torque(self, samples: Samples) -> tuple[Array, Array]:
+    def evaluate_friction_and_motor_torque(self, log_samples: LogSamples) -> tuple[Array, Array]:
         """Friction torque (n) [N.m] and total torque (n) [N.m] of the motor at samples."""
-        ratio = abs(self.drive.ratio)
-        terms = LinearTorqueTerms.evaluate_at_samples(samples, ratio)
-        load = terms.tooth_load(samples, self.linear_unknowns, ratio, self.rotor_inertia)
-        friction_torque = filtered_motor_friction(self.drive, samples, load)
+        ratio = abs(self.fitted_drive.ratio)
+        terms = LinearTorqueTerms.evaluate_at_samples(log_samples, ratio)
+        load = terms.tooth_load(log_samples, self.linear_unknowns, ratio, self.rotor_inertia)
+        friction_torque = filtered_motor_friction(self.fitted_drive, log_samples, load)
         return (
             friction_torque,
-            friction_torque + terms.design_matrix @ self.linear_unknowns + terms.measured_load,
+            friction_torque + terms.design_matrix @ self.linear_unknowns + terms.measured_load_torque,
         )
 
-    def evaluate_tooth_load(self, samples: Samples) -> tuple[Array, Array]:
+    def evaluate_tooth_load_and_deviations(self, log_samples: LogSamples) -> tuple[Array, Array]:
         """Load (n) [N.m] of the teeth at samples, and its standard deviations as changes (m, n) [N.m].
 
         Each change follows from one of m independent errors of one standard deviation: the principal
         directions of the covariance of the linear unknowns, then the rotor inertia.
         """
-        ratio = abs(self.drive.ratio)
-        terms = LinearTorqueTerms.evaluate_at_samples(samples, ratio)
-        load = terms.tooth_load(samples, self.linear_unknowns, ratio, self.rotor_inertia)
-        variances, directions = np.linalg.eigh(self.covariance)
+        ratio = abs(self.fitted_drive.ratio)
+        terms = LinearTorqueTerms.evaluate_at_samples(log_samples, ratio)
+        load = terms.tooth_load(log_samples, self.linear_unknowns, ratio, self.rotor_inertia)
+        variances, directions = np.linalg.eigh(self.linear_unknown_covariance)
         ends = self.linear_unknowns + np.sqrt(np.maximum(variances, 0.0))[:, None] * directions.T
         cases = [
             *((end, self.rotor_inertia) for end in ends),
             (self.linear_unknowns, self.rotor_inertia + self.rotor_inertia_deviation),
         ]
-        changes = [terms.tooth_load(samples, end, ratio, rotor) - load for end, rotor in cases]
+        changes = [terms.tooth_load(log_samples, end, ratio, rotor) - load for end, rotor in cases]
         return load, np.reshape(changes, (len(changes), load.size))
 
     def no_load_friction(self, joint_speed: Array, temperature: float) -> Array:
         """No-load friction torque (n) [N.m] at joint speeds (n) [rad/s] and a temperature [K]."""
         return motor_friction(
-            self.drive, joint_speed, np.full(joint_speed.size, temperature), np.zeros(joint_speed.size)
+            self.fitted_drive, joint_speed, np.full(joint_speed.size, temperature), np.zeros(joint_speed.size)
         )
 
 
-def select_parameters(
-    samples: Samples, drive: DriveParameters, fitted_names: Sequence[str], rotor_inertia: float
+def select_friction_parameters(
+    log_samples: LogSamples,
+    drive_parameters: DriveParameters,
+    fitted_names: Sequence[str],
+    rotor_inertia: float,
 ) -> tuple[list[str], list[str]]:
     """Select the friction parameters to fit: those that the samples can determine.
 
-    fitted_names  : names that the user states; empty: select from FITTED_PARAMETERS
+    fitted_names  : names that the user states; empty: select from FITTABLE_FRICTION_PARAMETERS
     rotor_inertia : [kg.m2]
 
     Returns the names, and notes why other parameters are not fitted.
@@ -236,29 +251,30 @@ def select_parameters(
     if fitted_names:
         return list(fitted_names), []
     reasons: dict[str, str] = {}
-    terms, linear = _fit_linear_model(samples, drive)
+    terms, linear = _fit_linear_model(log_samples, drive_parameters)
     load = terms.tooth_load(
-        samples, linear[2:], abs(drive.ratio), rotor_inertia
+        log_samples, linear[2:], abs(drive_parameters.ratio), rotor_inertia
     )  # with constant dry and viscous friction
-    if np.max(np.abs(load)) < MIN_LOAD_OVER_RATED_TORQUE * drive.rated_torque:
+    if np.max(np.abs(load)) < MIN_LOAD_OVER_RATED_TORQUE * drive_parameters.rated_torque:
         text = f"the load stays below {MIN_LOAD_OVER_RATED_TORQUE:g} times the rated torque"
         reasons |= {LOAD_LOSS_NAME: text, BACK_DRIVING_LOSS_NAME: text}
     else:
-        back_driven = load * samples.dq < -MIN_LOAD_OVER_RATED_TORQUE * drive.rated_torque * np.abs(
-            samples.dq
+        back_driven = (
+            load * log_samples.dq
+            < -MIN_LOAD_OVER_RATED_TORQUE * drive_parameters.rated_torque * np.abs(log_samples.dq)
         )
-        if drive.load_loss_back < 0.0:
+        if drive_parameters.load_loss_back < 0.0:
             reasons[BACK_DRIVING_LOSS_NAME] = "the start file sets it equal to load_loss"
         elif not back_driven.any():
             reasons[BACK_DRIVING_LOSS_NAME] = "the load never drives the motor"
-    known = samples.temperature[np.isfinite(samples.temperature)]
+    known = log_samples.temperature[np.isfinite(log_samples.temperature)]
     if known.size == 0 or np.ptp(known) < MIN_TEMPERATURE_RANGE:
         span = "the log has no temperature" if known.size == 0 else f"{np.ptp(known):.2g} K of temperature"
         reasons |= dict.fromkeys(
             TEMPERATURE_COEFFICIENT_NAMES, f"{span}, {MIN_TEMPERATURE_RANGE:g} K are needed"
         )
-    slowest = abs(drive.ratio) * np.min(np.abs(samples.dq))
-    if slowest > 2.0 * drive.stribeck_speed:
+    slowest = abs(drive_parameters.ratio) * np.min(np.abs(log_samples.dq))
+    if slowest > 2.0 * drive_parameters.stribeck_speed:
         reasons[STRIBECK_FRICTION_NAME] = (
             f"the motor is never slower than {slowest:.3g} rad/s; speeds below twice "
             f"stribeck_speed are needed"
@@ -266,10 +282,12 @@ def select_parameters(
     notes = [
         f"the log does not determine {name}, which keeps its value: {why}" for name, why in reasons.items()
     ]
-    return [name for name in FITTED_PARAMETERS if name not in reasons], notes
+    return [name for name in FITTABLE_FRICTION_PARAMETERS if name not in reasons], notes
 
 
-def _fit_linear_model(samples: Samples, drive: DriveParameters) -> tuple[LinearTorqueTerms, Array]:
+def _fit_linear_model(
+    log_samples: LogSamples, drive_parameters: DriveParameters
+) -> tuple[LinearTorqueTerms, Array]:
     """Estimate all terms of the motor torque by one linear fit.
 
     Dry friction is constant, viscous friction proportional to the speed.
@@ -277,164 +295,181 @@ def _fit_linear_model(samples: Samples, drive: DriveParameters) -> tuple[LinearT
     Returns the linear terms, and an array: dry friction [N.m], viscous coefficient [N.m.s/rad], and the
     unknowns of the linear terms.
     """
-    ratio = abs(drive.ratio)
-    terms = LinearTorqueTerms.evaluate_at_samples(samples, ratio)
-    friction_terms = np.stack([np.sign(samples.dq), ratio * samples.dq], axis=1)
+    ratio = abs(drive_parameters.ratio)
+    terms = LinearTorqueTerms.evaluate_at_samples(log_samples, ratio)
+    friction_terms = np.stack([np.sign(log_samples.dq), ratio * log_samples.dq], axis=1)
     matrix = np.concatenate([friction_terms, terms.design_matrix], axis=1)
-    return terms, np.linalg.lstsq(matrix, samples.motor_torque - terms.measured_load)[0]
+    return terms, np.linalg.lstsq(matrix, log_samples.motor_torque - terms.measured_load_torque)[0]
 
 
-def fit_samples(
-    parameter_file: ParameterFile, samples: Samples, fitted_names: Sequence[str], rotor_inertia: float
+def fit_friction_to_samples(
+    parameter_file: ParameterFile, log_samples: LogSamples, fitted_names: Sequence[str], rotor_inertia: float
 ) -> FittedLogFriction:
-    """Fit friction parameters and linear terms to samples.
+    """Fit friction parameters, and inertia, offset and gravity of the motor torque, to samples of logs.
 
     fitted_names  : names of the friction parameters to fit
     rotor_inertia : [kg.m2]
     """
-    linear = _fit_linear_model(samples, parameter_file.values)[1]
-    start_values, linear = _start_values(parameter_file, samples, linear), linear[2:]
+    linear = _fit_linear_model(log_samples, parameter_file.values)[1]
+    start_values, linear = _find_start_values(parameter_file, log_samples, linear), linear[2:]
     changed = parameter_file.with_values(
         {n: v for n, v in start_values.items() if n in fitted_names}, "calibration", "start"
     )
     bounds = {name: (LOWER_BOUND_OVER_START_VALUE * value, np.inf) for name, value in start_values.items()}
     noise = None
-    step = samples.dq.size // FIRST_FIT_SAMPLES
+    step = log_samples.dq.size // FIRST_FIT_SAMPLE_COUNT
     if step > 1:
-        few = samples.select_samples(np.arange(0, samples.dq.size, step))
-        first = _iterate_load(parameter_file, changed, few, fitted_names, bounds, linear, rotor_inertia)
-        linear, noise = first.linear_unknowns, first.solution.noise
-        changed = parameter_file.with_values(first.solution.values, "calibration", "start")
-    return _iterate_load(parameter_file, changed, samples, fitted_names, bounds, linear, rotor_inertia, noise)
+        few = log_samples.select_samples(np.arange(0, log_samples.dq.size, step))
+        first = _fit_with_iterated_load(
+            parameter_file, changed, few, fitted_names, bounds, linear, rotor_inertia
+        )
+        linear, noise = first.linear_unknowns, first.friction_solution.noise
+        changed = parameter_file.with_values(first.friction_solution.values, "calibration", "start")
+    return _fit_with_iterated_load(
+        parameter_file, changed, log_samples, fitted_names, bounds, linear, rotor_inertia, noise
+    )
 
 
-def _iterate_load(
+def _fit_with_iterated_load(
     parameter_file: ParameterFile,
     start_file: ParameterFile,
-    samples: Samples,
+    log_samples: LogSamples,
     fitted_names: Sequence[str],
-    bounds: Mapping[str, tuple[float, float]],
+    value_bounds: Mapping[str, tuple[float, float]],
     linear_unknowns: Array,
     rotor_inertia: float,
-    noise: float | None = None,
+    residual_noise: float | None = None,
 ) -> FittedLogFriction:
-    """Fit friction parameters and linear terms to samples, with the load of each fit from the fit before.
+    """Fit friction, inertia, offset and gravity repeatedly: each fit takes the tooth load of the fit before.
 
     start_file      : parameter file with the start values
-    bounds          : {name: lower and upper bound}
+    value_bounds    : {name: lower and upper bound}
     linear_unknowns : start values (k) of the linear terms
-    noise           : start value of the standard deviation of a residual [N.m]; None: unknown
+    residual_noise  : start value of the standard deviation of a residual [N.m]; None: unknown
     """
     ratio, linear, changed = abs(parameter_file.values.ratio), linear_unknowns, start_file
-    terms = LinearTorqueTerms.evaluate_at_samples(samples, ratio)
-    load = terms.tooth_load(samples, linear, ratio, rotor_inertia)
+    terms = LinearTorqueTerms.evaluate_at_samples(log_samples, ratio)
+    load = terms.tooth_load(log_samples, linear, ratio, rotor_inertia)
     for _ in range(LOAD_ITERATION_COUNT):
 
         def net_torque(parameter_values: Mapping[str, float], tooth_load: Array = load) -> Array:
-            """Motor torque (n) [N.m] without friction and measured gravity."""
+            """Motor torque [N.m] at n samples minus friction and measured load (joint sensor or gravity)."""
             drive = parameter_file.with_values(parameter_values, "calibration", "fit").values
             return np.asarray(
-                samples.motor_torque
-                - terms.measured_load
-                - filtered_motor_friction(drive, samples, tooth_load)
+                log_samples.motor_torque
+                - terms.measured_load_torque
+                - filtered_motor_friction(drive, log_samples, tooth_load)
             )
 
         def residuals(parameter_values: Mapping[str, float], net_torque_function=net_torque) -> Array:  # type: ignore[no-untyped-def]
             remaining = net_torque_function(parameter_values)
-            return np.asarray(remaining - terms.design_matrix @ terms.solve_unknowns(remaining))
+            return np.asarray(remaining - terms.design_matrix @ terms.solve_linear_unknowns(remaining))
 
-        solution = solve(
-            make_unknowns(changed, fitted_names, bounds),
+        solution = solve_least_squares(
+            make_fit_unknowns(changed, fitted_names, value_bounds),
             residuals,
-            noise=noise,
+            residual_deviation=residual_noise,
             nuisance_count=len(terms.unknown_names),
-            tolerance=FIT_TOLERANCE,
+            convergence_tolerance=RELATIVE_FIT_TOLERANCE,
         )
-        degrees_of_freedom = max(samples.dq.size - len(fitted_names) - len(terms.unknown_names), 1)
-        noise = float(np.sqrt(solution.residuals @ solution.residuals / degrees_of_freedom))
-        linear = terms.solve_unknowns(net_torque(solution.values))
+        degrees_of_freedom = max(log_samples.dq.size - len(fitted_names) - len(terms.unknown_names), 1)
+        residual_noise = float(np.sqrt(solution.residuals @ solution.residuals / degrees_of_freedom))
+        linear = terms.solve_linear_unknowns(net_torque(solution.values))
         changed = parameter_file.with_values(solution.values, "calibration", "fit")
-        previous, load = load, terms.tooth_load(samples, linear, ratio, rotor_inertia)
-        if np.max(np.abs(load - previous)) <= LOAD_TOLERANCE * np.max(np.abs(load)):
+        previous, load = load, terms.tooth_load(log_samples, linear, ratio, rotor_inertia)
+        if np.max(np.abs(load - previous)) <= RELATIVE_LOAD_TOLERANCE * np.max(np.abs(load)):
             break
-    assert noise is not None
-    solution = replace(solution, noise=noise, covariance=covariance(solution.jacobian, noise))
+    assert residual_noise is not None
+    solution = replace(
+        solution, noise=residual_noise, covariance=parameter_covariance(solution.jacobian, residual_noise)
+    )
     direct = solution.noise**2 * np.linalg.pinv(terms.design_matrix.T @ terms.design_matrix)
-    indirect = _propagate_deviations(solution, lambda values: terms.solve_unknowns(net_torque(values)))
+    indirect = _propagate_deviations(solution, lambda values: terms.solve_linear_unknowns(net_torque(values)))
     return FittedLogFriction(
         changed.values, solution, linear, direct + indirect.T @ indirect, rotor_inertia, 0.0
     )
 
 
-def refit_without_undetermined(
+def refit_without_undetermined_parameters(
     parameter_file: ParameterFile,
-    samples: Samples,
+    log_samples: LogSamples,
     fitted_log: FittedLogFriction,
     fitted_names: Sequence[str],
 ) -> tuple[FittedLogFriction, list[str], list[str]]:
     """Repeat the fit of the friction without the parameters that the log does not determine.
 
-    A parameter of START_VALUES is dropped if its standard deviation exceeds a factor of
+    A parameter of FRICTION_START_VALUES is dropped if its standard deviation exceeds a factor of
     UNDETERMINED_DEVIATION_FACTOR and its value in the file fits as well. Returns the fit, names of the fitted
     parameters, and notes about the others.
     """
     undetermined = [
         n
         for n in fitted_names
-        if n in START_VALUES
-        and fitted_log.solution.relative_deviations[n] > np.log(UNDETERMINED_DEVIATION_FACTOR)
+        if n in FRICTION_START_VALUES
+        and fitted_log.friction_solution.relative_deviations[n] > np.log(UNDETERMINED_DEVIATION_FACTOR)
     ]
     determined = [name for name in fitted_names if name not in undetermined]
     if undetermined and determined:
-        other = fit_samples(parameter_file, samples, determined, fitted_log.rotor_inertia)
-        increase = np.sum(other.solution.residuals**2) - np.sum(fitted_log.solution.residuals**2)
-        if increase < len(undetermined) * (MAX_RESIDUAL_INCREASE * fitted_log.solution.noise) ** 2:
+        other = fit_friction_to_samples(parameter_file, log_samples, determined, fitted_log.rotor_inertia)
+        increase = np.sum(other.friction_solution.residuals**2) - np.sum(
+            fitted_log.friction_solution.residuals**2
+        )
+        if (
+            increase
+            < len(undetermined) * (MAX_REFIT_RESIDUAL_INCREASE * fitted_log.friction_solution.noise) ** 2
+        ):
             text = "the log does not determine {}, which keeps its value: the fit is as good with that value"
             return other, determined, [text.format(name) for name in undetermined]
     return fitted_log, list(fitted_names), []
 
 
-def accept_vanishing(fitted_log: FittedLogFriction) -> tuple[FittedLogFriction, list[str]]:
+def accept_vanishing_friction(fitted_log: FittedLogFriction) -> tuple[FittedLogFriction, list[str]]:
     """Accept that friction parameters vanish: VANISHING_PARAMETERS on their lower bound, which stands for 0.
 
     Returns the fit, with these parameters no longer on a bound, and notes about them.
     """
-    solution = fitted_log.solution
+    solution = fitted_log.friction_solution
     vanishing = [name for name in solution.names_at_bound if name in VANISHING_PARAMETERS]
     others = tuple(name for name in solution.names_at_bound if name not in vanishing)
     notes = [f"the log shows no {name}: its smallest value fits best" for name in vanishing]
-    return replace(fitted_log, solution=replace(solution, names_at_bound=others)), notes
+    return replace(fitted_log, friction_solution=replace(solution, names_at_bound=others)), notes
 
 
-def has_friction(samples: Samples, drive: DriveParameters) -> bool:
-    """Whether samples show friction: a share of the motor torque above chance and MIN_FRICTION_SHARE."""
-    ratio = abs(drive.ratio)
-    terms, linear = _fit_linear_model(samples, drive)
-    sense, speed = np.sign(samples.dq), ratio * samples.dq
+def has_significant_friction(log_samples: LogSamples, drive_parameters: DriveParameters) -> bool:
+    """Whether samples show friction: its share of the motor torque exceeds chance and a minimum."""
+    ratio = abs(drive_parameters.ratio)
+    terms, linear = _fit_linear_model(log_samples, drive_parameters)
+    sense, speed = np.sign(log_samples.dq), ratio * log_samples.dq
     matrix = np.concatenate([np.stack([sense, speed], axis=1), terms.design_matrix], axis=1)
-    torque = samples.motor_torque - terms.measured_load
+    torque = log_samples.motor_torque - terms.measured_load_torque
     residual = torque - matrix @ linear
     noise = np.linalg.norm(residual) / np.sqrt(max(residual.size - linear.size, 1))
     covariance = noise**2 * np.linalg.pinv(matrix.T @ matrix)[:2, :2]
     mean = np.array([1.0, float(np.mean(np.abs(speed)))])  # friction at the mean speed
     size, deviation = float(mean @ linear[:2]), float(np.sqrt(mean @ covariance @ mean))
     return size > max(
-        MIN_FRICTION_DEVIATIONS * deviation, MIN_FRICTION_SHARE * float(np.sqrt(np.mean(torque**2)))
+        MIN_FRICTION_OVER_STANDARD_DEVIATION * deviation,
+        MIN_FRICTION_TORQUE_SHARE * float(np.sqrt(np.mean(torque**2))),
     )
 
 
-def is_driven_by_friction(samples: Samples, drive: DriveParameters) -> bool:
+def is_motion_driven_by_friction(log_samples: LogSamples, drive_parameters: DriveParameters) -> bool:
     """Whether the fitted friction drives the motion: then the torque has the wrong sign in the log."""
-    terms, linear = _fit_linear_model(samples, drive)
-    w1 = abs(drive.ratio) * samples.dq
+    terms, linear = _fit_linear_model(log_samples, drive_parameters)
+    w1 = abs(drive_parameters.ratio) * log_samples.dq
     friction_torque = linear[0] * np.sign(w1) + linear[1] * w1
-    residual = samples.motor_torque - terms.measured_load - friction_torque - terms.design_matrix @ linear[2:]
+    residual = (
+        log_samples.motor_torque
+        - terms.measured_load_torque
+        - friction_torque
+        - terms.design_matrix @ linear[2:]
+    )
     return bool(friction_torque @ w1 < 0.0 and np.sum(friction_torque**2) > np.sum(residual**2))
 
 
 def fit_with_rotor_inertia(
     parameter_file: ParameterFile,
-    samples: Samples,
+    log_samples: LogSamples,
     fitted_names: Sequence[str],
     rotor_inertia: float,
     rotor_inertia_deviation: float,
@@ -443,17 +478,21 @@ def fit_with_rotor_inertia(
 
     rotor_inertia_deviation : [kg.m2] standard deviation of the inertia; its effect is added to the covariance
     """
-    fit = fit_samples(parameter_file, samples, fitted_names, rotor_inertia)
-    shifted = fit_samples(
-        parameter_file, samples, fitted_names, rotor_inertia + rotor_inertia_deviation
-    ).solution.values
-    changes = np.array([np.log(shifted[name] / value) for name, value in fit.solution.values.items()])
-    wider = replace(fit.solution, covariance=fit.solution.covariance + np.outer(changes, changes))
-    return replace(fit, solution=wider, rotor_inertia_deviation=rotor_inertia_deviation)
+    fit = fit_friction_to_samples(parameter_file, log_samples, fitted_names, rotor_inertia)
+    shifted = fit_friction_to_samples(
+        parameter_file, log_samples, fitted_names, rotor_inertia + rotor_inertia_deviation
+    ).friction_solution.values
+    changes = np.array(
+        [np.log(shifted[name] / value) for name, value in fit.friction_solution.values.items()]
+    )
+    wider = replace(
+        fit.friction_solution, covariance=fit.friction_solution.covariance + np.outer(changes, changes)
+    )
+    return replace(fit, friction_solution=wider, rotor_inertia_deviation=rotor_inertia_deviation)
 
 
 def _propagate_deviations(
-    solution: Solution, propagated_function: Callable[[Mapping[str, float]], Array]
+    fit_solution: FitSolution, propagated_function: Callable[[Mapping[str, float]], Array]
 ) -> Array:
     """Changes (k, m) of m function values by k independent errors of a solution, one standard deviation each.
 
@@ -461,30 +500,30 @@ def _propagate_deviations(
 
     propagated_function : {name: value} -> m function values
     """
-    variances, directions = np.linalg.eigh(solution.covariance)
-    rows, reference = [], propagated_function(solution.values)
+    variances, directions = np.linalg.eigh(fit_solution.covariance)
+    rows, reference = [], propagated_function(fit_solution.values)
     for deviation, direction in zip(np.sqrt(np.maximum(variances, 0.0)), directions.T, strict=True):
         changed = {
             n: v * float(np.exp(FINITE_DIFFERENCE_STEP * d))
-            for (n, v), d in zip(solution.values.items(), direction, strict=True)
+            for (n, v), d in zip(fit_solution.values.items(), direction, strict=True)
         }
         rows.append((propagated_function(changed) - reference) * deviation / FINITE_DIFFERENCE_STEP)
     return np.array(rows)
 
 
-def _start_values(
-    parameter_file: ParameterFile, samples: Samples, linear_fit_values: Array
+def _find_start_values(
+    parameter_file: ParameterFile, log_samples: LogSamples, linear_fit_values: Array
 ) -> dict[str, float]:
     """Start values {name: value}: dry and viscous friction from the linear fit, others from the file.
 
-    linear_fit_values : result of `_fit_linear_model`
+    linear_fit_values : dry friction [N.m], viscous coefficient [N.m.s/rad], and other unknowns of the fit
     """
-    size = float(np.median(np.abs(samples.motor_torque))) or 1.0
-    fastest = abs(parameter_file.values.ratio) * float(np.max(np.abs(samples.dq)))
+    size = float(np.median(np.abs(log_samples.motor_torque))) or 1.0
+    fastest = abs(parameter_file.values.ratio) * float(np.max(np.abs(log_samples.dq)))
     dry = max(float(linear_fit_values[0]), 0.05 * size)
     others = {
         name: parameter_file.values_by_name[name] if parameter_file.values_by_name[name] > 0.0 else value
-        for name, value in START_VALUES.items()
+        for name, value in FRICTION_START_VALUES.items()
     }
     return {
         DRY_FRICTION_NAME: dry,

@@ -1,9 +1,9 @@
 """Logs of a robot: read and check the columns, filter them, select samples.
 
 A log with the column time is dynamic. Motion and torque pass the same filter, a local polynomial over
-FILTER_WINDOW (Savitzky and Golay 1964), which also gives the derivatives. One sample per window is kept, so
-that the noise of the samples is independent. Samples are marked if the drive has rotated far enough since its
-last reversal. A log without the column time is a table of steady speeds, and is not filtered.
+FILTER_WINDOW_TIME (Savitzky and Golay 1964), which also gives the derivatives. One sample per window is kept,
+so that the noise of the samples is independent. Samples are marked if the drive has rotated far enough since
+its last reversal. A log without the column time is a table of steady speeds, and is not filtered.
 """
 
 from collections.abc import Mapping, Sequence
@@ -23,7 +23,7 @@ from ....common import columns
 
 SampleIndices: TypeAlias = NDArray[np.int_]
 """Indices of samples."""
-FILTER_WINDOW, FILTER_DEGREE = 0.04, 4
+FILTER_WINDOW_TIME, FILTER_POLYNOMIAL_DEGREE = 0.04, 4
 """Window of the filter [s], and degree of its polynomial [1]."""
 FILTER_NODE_COUNT = 9
 """Number of speeds in a window at which friction is evaluated and filtered; smallest number of samples of a
@@ -35,7 +35,7 @@ MIN_LARGEST_OVER_SMALLEST_SPEED = 1.2
 
 
 @dataclass(frozen=True, slots=True)
-class Samples:
+class LogSamples:
     """Samples of logs; arrays (n) in SI units, NaN for columns that a log does not have.
 
     time                  : [s]
@@ -73,125 +73,145 @@ class Samples:
     is_friction_developed: NDArray[np.bool_]
 
     @property
-    def has_sensor(self) -> bool:
+    def has_joint_torque_sensor(self) -> bool:
         """Whether the torque at the joint is measured for all samples."""
         return bool(np.all(np.isfinite(self.sensor_torque)))
 
-    def select_samples(self, sample_selection: NDArray[np.bool_] | SampleIndices) -> "Samples":
+    def select_samples(self, sample_selection: NDArray[np.bool_] | SampleIndices) -> "LogSamples":
         """Select samples of the logs by a mask or indices."""
-        return Samples(*(getattr(self, field.name)[sample_selection] for field in fields(self)))
+        return LogSamples(*(getattr(self, field.name)[sample_selection] for field in fields(self)))
 
 
-def join_samples(samples_of_logs: Sequence[Samples]) -> Samples:
+def join_samples(samples_of_logs: Sequence[LogSamples]) -> LogSamples:
     """Join the samples of several logs into one object."""
-    return Samples(*(np.concatenate([getattr(p, f.name) for p in samples_of_logs]) for f in fields(Samples)))
+    return LogSamples(
+        *(np.concatenate([getattr(p, f.name) for p in samples_of_logs]) for f in fields(LogSamples))
+    )
 
 
-def make_steady_speed_samples(columns_by_name: Mapping[str, Array], torque: Array) -> Samples:
+def make_steady_speed_samples(columns_by_name: Mapping[str, Array], steady_motor_torque: Array) -> LogSamples:
     """Make the samples of a table of steady speeds; every third row is held out."""
-    none = np.full(torque.size, np.nan)
-    return Samples(
+    none = np.full(steady_motor_torque.size, np.nan)
+    return LogSamples(
         time=none,
         q=columns_by_name.get("q", none),
         dq=columns_by_name["dq"],
-        ddq=np.zeros(torque.size),
+        ddq=np.zeros(steady_motor_torque.size),
         window_speeds=np.repeat(columns_by_name["dq"][:, None], FILTER_NODE_COUNT, axis=1),
-        window_weights=np.repeat(np.eye(1, FILTER_NODE_COUNT), torque.size, axis=0),
+        window_weights=np.repeat(np.eye(1, FILTER_NODE_COUNT), steady_motor_torque.size, axis=0),
         window_angles=np.repeat(columns_by_name.get("q_motor", none)[:, None], FILTER_NODE_COUNT, axis=1),
-        ripple_terms=np.zeros((torque.size, 0)),
-        motor_torque=torque,
+        ripple_terms=np.zeros((steady_motor_torque.size, 0)),
+        motor_torque=steady_motor_torque,
         gravity_torque=columns_by_name.get("gravity", none),
         temperature=columns_by_name.get("temperature", none),
         motor_angle=none,
         sensor_torque=columns_by_name.get("link_torque", none),
-        is_held_out=np.arange(torque.size) % 3 == 1,
-        is_of_dynamic_log=np.zeros(torque.size, dtype=bool),
+        is_held_out=np.arange(steady_motor_torque.size) % 3 == 1,
+        is_of_dynamic_log=np.zeros(steady_motor_torque.size, dtype=bool),
         is_friction_developed=columns_by_name["dq"] != 0.0,
     )
 
 
-def window_size(time_step: float) -> int:
+def filter_window_size(time_step: float) -> int:
     """Number of samples in the window of the filter of a log, at a time step [s]; odd."""
-    return max(2 * round(0.5 * FILTER_WINDOW / time_step) + 1, FILTER_NODE_COUNT)
+    return max(2 * round(0.5 * FILTER_WINDOW_TIME / time_step) + 1, FILTER_NODE_COUNT)
 
 
-def filter_values(values: Array, time_step: float, derivative_order: int = 0) -> Array:
-    """Filter a column (n) of a log at a constant time step [s], or its derivative of an order."""
+def filter_column_values(column_values: Array, time_step: float, derivative_order: int = 0) -> Array:
+    """Filtered column (n) of a log with a constant time step [s], or its filtered derivative."""
     return np.asarray(
-        savgol_filter(values, window_size(time_step), FILTER_DEGREE, derivative_order, time_step)
+        savgol_filter(
+            column_values,
+            filter_window_size(time_step),
+            FILTER_POLYNOMIAL_DEGREE,
+            derivative_order,
+            time_step,
+        )
     )
 
 
 def make_dynamic_samples(
-    time: Array, time_step: float, columns_by_name: Mapping[str, Array], drive: DriveParameters
-) -> Samples:
-    """Make the filtered samples of a dynamic log, at times (n) [s] with a constant step [s]."""
-    none = np.full(time.size, np.nan)
+    sample_times: Array,
+    time_step: float,
+    columns_by_name: Mapping[str, Array],
+    drive_parameters: DriveParameters,
+) -> LogSamples:
+    """Make the filtered samples of a log with a column `time`, at n times [s] with a constant step [s]."""
+    none = np.full(sample_times.size, np.nan)
 
     def filter_column(column_name: str) -> Array:
         """Filter a column of the log, or its derivative; NaN if the log does not have it."""
         return (
-            filter_values(columns_by_name[column_name], time_step) if column_name in columns_by_name else none
+            filter_column_values(columns_by_name[column_name], time_step)
+            if column_name in columns_by_name
+            else none
         )
 
     without_dq = "dq" not in columns_by_name
-    dq = filter_values(columns_by_name["q"], time_step, 1) if without_dq else filter_column("dq")
-    nodes, weights = _filter_nodes(window_size(time_step))
-    window = np.clip(np.arange(time.size)[:, None] + nodes, 0, time.size - 1)
+    dq = filter_column_values(columns_by_name["q"], time_step, 1) if without_dq else filter_column("dq")
+    nodes, weights = _filter_window_nodes(filter_window_size(time_step))
+    window = np.clip(np.arange(sample_times.size)[:, None] + nodes, 0, sample_times.size - 1)
     joint_angle, motor_angle = filter_column("q"), filter_column("q_motor")
-    rotation = motor_angle if "q_motor" in columns_by_name else drive.ratio * joint_angle
-    return Samples(
-        time=time,
+    rotation = motor_angle if "q_motor" in columns_by_name else drive_parameters.ratio * joint_angle
+    return LogSamples(
+        time=sample_times,
         q=joint_angle,
         dq=dq,
-        ddq=filter_values(columns_by_name["q"], time_step, 2)
+        ddq=filter_column_values(columns_by_name["q"], time_step, 2)
         if without_dq
-        else filter_values(columns_by_name["dq"], time_step, 1),
+        else filter_column_values(columns_by_name["dq"], time_step, 1),
         window_speeds=dq[window],
-        window_weights=np.repeat(weights[None, :], time.size, axis=0),
+        window_weights=np.repeat(weights[None, :], sample_times.size, axis=0),
         window_angles=rotation[window],
-        ripple_terms=np.zeros((time.size, 0)),
+        ripple_terms=np.zeros((sample_times.size, 0)),
         motor_torque=filter_column("tau"),
         gravity_torque=filter_column("gravity"),
         temperature=columns_by_name.get("temperature", none),
         motor_angle=motor_angle,
         sensor_torque=filter_column("link_torque"),
-        is_held_out=time > time[0] + 0.7 * (time[-1] - time[0]),
-        is_of_dynamic_log=np.ones(time.size, dtype=bool),
-        is_friction_developed=_is_friction_developed(dq, time_step, window_size(time_step), drive),
+        is_held_out=sample_times > sample_times[0] + 0.7 * (sample_times[-1] - sample_times[0]),
+        is_of_dynamic_log=np.ones(sample_times.size, dtype=bool),
+        is_friction_developed=_is_friction_developed(
+            dq, time_step, filter_window_size(time_step), drive_parameters
+        ),
     )
 
 
-def _filter_nodes(window_width: int) -> tuple[SampleIndices, Array]:
+def _filter_window_nodes(window_sample_count: int) -> tuple[SampleIndices, Array]:
     """Sample offsets (FILTER_NODE_COUNT) of the nodes of the filter window, and the weights at the nodes.
 
     The weights are those for values that are linear between the nodes.
     """
-    half = window_width // 2
+    half = window_sample_count // 2
     nodes = np.round(np.linspace(-half, half, FILTER_NODE_COUNT)).astype(int)
     hats = [np.interp(np.arange(-half, half + 1), nodes, row) for row in np.eye(FILTER_NODE_COUNT)]
-    return nodes, np.array(hats) @ savgol_coeffs(window_width, FILTER_DEGREE, use="dot")
+    return nodes, np.array(hats) @ savgol_coeffs(window_sample_count, FILTER_POLYNOMIAL_DEGREE, use="dot")
 
 
 def _is_friction_developed(
-    joint_speed: Array, time_step: float, window_width: int, drive: DriveParameters
+    joint_speed: Array, time_step: float, window_sample_count: int, drive_parameters: DriveParameters
 ) -> NDArray[np.bool_]:
     """Mask (n) of samples with fully developed friction.
 
-    The motor has rotated by DEVELOPED_FRICTION_ROTATION_OVER_PRESLIDING times `presliding` since its last
-    reversal, and no reversal lies within the window of the filter (`window_width` samples).
+    The motor has rotated by DEVELOPED_FRICTION_ROTATION_OVER_PRESLIDING times the presliding rotation since
+    its last reversal, and no reversal lies within the window of the filter (`window_sample_count` samples).
     """
     sign = np.sign(joint_speed)
     run = np.concatenate([[0], np.cumsum(np.diff(sign) != 0.0)])
     first = np.concatenate([[0], np.flatnonzero(np.diff(run)) + 1])
     last = np.concatenate([first[1:], [joint_speed.size]])
     index = np.arange(joint_speed.size)
-    rotation = np.concatenate([[0.0], np.cumsum(np.abs(joint_speed[1:]))]) * time_step * abs(drive.ratio)
+    rotation = (
+        np.concatenate([[0.0], np.cumsum(np.abs(joint_speed[1:]))]) * time_step * abs(drive_parameters.ratio)
+    )
     before, after = index - first[run], last[run] - 1 - index
     developed = (
-        rotation - rotation[first[run]] > DEVELOPED_FRICTION_ROTATION_OVER_PRESLIDING * drive.presliding
+        rotation - rotation[first[run]]
+        > DEVELOPED_FRICTION_ROTATION_OVER_PRESLIDING * drive_parameters.presliding
     )
-    return np.asarray(developed & (before > window_width // 2) & (after > window_width // 2) & (sign != 0.0))
+    return np.asarray(
+        developed & (before > window_sample_count // 2) & (after > window_sample_count // 2) & (sign != 0.0)
+    )
 
 
 COLUMN_UNITS: Mapping[str, UnitSizes] = {
@@ -234,16 +254,16 @@ MIN_LOG_ROW_COUNT = 6
 """Required number of rows of a log."""
 MAX_MOTOR_SPEED = 2000.0
 """Largest plausible speed of a wave generator [rad/s]: catalogues allow up to 14 000 rev/min."""
-MAX_CURRENT = 1e3
+MAX_MOTOR_CURRENT = 1e3
 """Largest plausible motor current [A]."""
 MAX_MOTOR_OVER_DRIVE_TORQUE = 3.0
 """Largest plausible motor torque over max_torque/ratio [1]."""
 MIN_MOTOR_SPEED = 1e-3
 """Motor speed [rad/s] below which a log has no motion."""
-TIME_STEP_TOLERANCE, TIME_GAP_RATIO = 0.2, 10.0
+MAX_RELATIVE_TIME_STEP_DEVIATION, MIN_TIME_GAP_OVER_TIME_STEP = 0.2, 10.0
 """Deviation of a time step from the median, over the median [1], up to which the sampling counts as even; and
 time step over the median [1] that counts as a gap."""
-SPEED_OVER_DERIVATIVE_RANGE = (0.5, 2.0)
+SPEED_COLUMN_OVER_ANGLE_DERIVATIVE_RANGE = (0.5, 2.0)
 """Smallest and largest ratio of the column dq and the derivative of q [1]; outside, a unit is wrong."""
 
 
@@ -255,61 +275,63 @@ class MeasuredLog:
                        samples is the torque at the joint over the ratio
     """
 
-    path: Path
-    samples: Samples
+    log_path: Path
+    log_samples: LogSamples
     has_motor_torque: bool
 
 
-def read_table(path: Path, renamed_columns: Mapping[str, tuple[str, str | None]]) -> columns.Columns:
+def read_log_columns(
+    log_path: Path, renamed_columns: Mapping[str, tuple[str, str | None]]
+) -> columns.TableColumns:
     """Read the columns of a robot's log from a file.
 
     renamed_columns : {column: (heading, unit or None)} for other headings
 
     Raises ValueError with a one-line message that begins with the path.
     """
-    return columns.read_columns(path, COLUMN_UNITS, MIN_LOG_ROW_COUNT, COLUMN_SYNONYMS, renamed_columns)
+    return columns.read_columns(log_path, COLUMN_UNITS, MIN_LOG_ROW_COUNT, COLUMN_SYNONYMS, renamed_columns)
 
 
-def make_log(
-    log_columns: columns.Columns,
+def make_measured_log(
+    log_columns: columns.TableColumns,
     torque_constant: float | None,
-    drive: DriveParameters,
-    torque_at: str = "motor",
+    drive_parameters: DriveParameters,
+    torque_location: str = "motor",
 ) -> MeasuredLog:
     """Make the samples of a robot's log from its columns.
 
-    torque_constant : motor torque over motor current [N.m/A]
-    drive           : drive, for plausibility checks of speed and torque
-    torque_at       : place of the torque in the column tau, "motor" or "joint"
+    torque_constant  : motor torque over motor current [N.m/A]
+    drive_parameters : drive, for plausibility checks of speed and torque
+    torque_location  : side of the drive to which the torque in the column tau refers, "motor" or "joint"
 
     Raises ValueError with a one-line message that begins with the path.
     """
-    path, have = log_columns.path, dict(log_columns.columns)
-    if torque_at == "joint" and "tau" in have:
+    path, have = log_columns.table_path, dict(log_columns.values_by_name)
+    if torque_location == "joint" and "tau" in have:
         if "link_torque" in have:
             raise ValueError(
-                f"{path}: has tau and link_torque, with --torque-at joint both at the joint; "
-                "expected one of them"
+                f"{path}: has tau and link_torque, with --torque-at joint both at the joint; expected one "
+                "of them"
             )
         have["link_torque"] = have.pop("tau")
-    torque = _motor_torque(log_columns, have, torque_constant)
+    torque = _find_motor_torque(log_columns, have, torque_constant)
     has_motor_torque = torque is not None
     if torque is None:
-        torque = _joint_torque(log_columns, have, torque_at) / abs(drive.ratio)
-    if "temperature" in have and log_columns.units["temperature"] != "K":
+        torque = _find_joint_torque(log_columns, have, torque_location) / abs(drive_parameters.ratio)
+    if "temperature" in have and log_columns.heading_units["temperature"] != "K":
         have["temperature"] = have["temperature"] + CELSIUS_ZERO_IN_KELVIN
     if "time" in have:
-        samples = _read_dynamic_log(log_columns, have, torque, drive)
+        samples = _read_dynamic_log(log_columns, have, torque, drive_parameters)
     else:
         log_columns.require_column("dq", COLUMN_UNITS)
         samples = make_steady_speed_samples(have, torque)
-        _check_speeds(path, samples, drive)
-    _check_motor_torque(path, samples, drive, torque_constant)
+        _check_speeds(path, samples, drive_parameters)
+    _check_motor_torque(path, samples, drive_parameters, torque_constant)
     return MeasuredLog(path, samples, has_motor_torque)
 
 
-def _motor_torque(
-    log_columns: columns.Columns, columns_by_name: Mapping[str, Array], torque_constant: float | None
+def _find_motor_torque(
+    log_columns: columns.TableColumns, columns_by_name: Mapping[str, Array], torque_constant: float | None
 ) -> Array | None:
     """Motor torque (n) [N.m], from the column of the torque or of the current; None if there is neither."""
     if "tau" in columns_by_name:
@@ -317,100 +339,108 @@ def _motor_torque(
     if "i" not in columns_by_name:
         return None
     current = columns_by_name["i"]
-    if np.max(np.abs(current)) > MAX_CURRENT:
+    if np.max(np.abs(current)) > MAX_MOTOR_CURRENT:
         raise ValueError(
-            f"{log_columns.path}: a current of {np.max(np.abs(current)):.4g} A is outside "
-            f"[-{MAX_CURRENT:g}, {MAX_CURRENT:g}] A; likely i is in mA"
+            f"{log_columns.table_path}: a current of {np.max(np.abs(current)):.4g} A is outside "
+            f"[-{MAX_MOTOR_CURRENT:g}, {MAX_MOTOR_CURRENT:g}] A; likely i is in mA"
         )
     if torque_constant is None:
         raise ValueError(
-            f"{log_columns.path}: has the motor current, but no torque; expected --torque-constant [N.m/A]"
+            f"{log_columns.table_path}: has the motor current, but no torque; expected --torque-constant "
+            "[N.m/A]"
         )
     return torque_constant * current
 
 
-def _joint_torque(
-    log_columns: columns.Columns, columns_by_name: Mapping[str, Array], torque_at: str
+def _find_joint_torque(
+    log_columns: columns.TableColumns, columns_by_name: Mapping[str, Array], torque_location: str
 ) -> Array:
     """Torque (n) [N.m] at the joint of a log without a torque of the motor.
 
     Raises ValueError if there is no torque, or if the user has not stated that it is measured at the joint.
     """
-    wanted = columns.format_heading({name: COLUMN_UNITS[name] for name in ("tau", "i")})
+    wanted = columns.format_expected_heading({name: COLUMN_UNITS[name] for name in ("tau", "i")})
     if "link_torque" in columns_by_name:
-        if torque_at == "joint":
+        if torque_location == "joint":
             return columns_by_name["link_torque"]
         raise ValueError(
-            f"{log_columns.path}: has the torque at the joint, link_torque, and no torque and no current of "
-            f"the motor; expected {wanted}, or --torque-at joint"
+            f"{log_columns.table_path}: has the torque at the joint, link_torque, and no torque and no "
+            f"current of the motor; expected {wanted}, or --torque-at joint"
         )
-    names = ", ".join(columns.read_column_names(log_columns.path))
+    names = ", ".join(columns.read_column_names(log_columns.table_path))
     raise ValueError(
-        f"{log_columns.path}: has no torque and no current of the motor; expected {wanted}; the file has "
-        f"{names}; a heading needs a unit, --columns 'i=HEADING [A]' states another heading"
+        f"{log_columns.table_path}: has no torque and no current of the motor; expected {wanted}; the file "
+        f"has {names}; a heading needs a unit, --columns 'i=HEADING [A]' states another heading"
     )
 
 
 def _read_dynamic_log(
-    log_columns: columns.Columns, columns_by_name: Mapping[str, Array], torque: Array, drive: DriveParameters
-) -> Samples:
-    """Read the filtered samples of a dynamic log, one per window of the filter."""
+    log_columns: columns.TableColumns,
+    columns_by_name: Mapping[str, Array],
+    motor_torque: Array,
+    drive_parameters: DriveParameters,
+) -> LogSamples:
+    """Read the filtered samples of a log with a column `time`, one per window of the filter."""
     if "q" not in columns_by_name and "dq" not in columns_by_name:
         raise ValueError(
-            f"{log_columns.path}: has neither q nor dq; expected {columns.format_heading(COLUMN_UNITS)}"
+            f"{log_columns.table_path}: has neither q nor dq; expected "
+            f"{columns.format_expected_heading(COLUMN_UNITS)}"
         )
-    time, step = _time_step(log_columns)
+    time, step = _find_time_step(log_columns)
     even = np.arange(time[0], time[-1] + 0.5 * step, step)
     columns_by_name = {
-        name: np.interp(even, time, x) for name, x in (*columns_by_name.items(), ("tau", torque))
+        name: np.interp(even, time, x) for name, x in (*columns_by_name.items(), ("tau", motor_torque))
     }
-    width = window_size(step)
+    width = filter_window_size(step)
     if even.size < 2 * width:
         raise ValueError(
-            f"{log_columns.path}: takes {time[-1] - time[0]:.4g} s, expected at least "
+            f"{log_columns.table_path}: the record lasts {time[-1] - time[0]:.4g} s, expected at least "
             f"{2 * width * step:.3g} s"
         )
-    samples = make_dynamic_samples(even, step, columns_by_name, drive)
+    samples = make_dynamic_samples(even, step, columns_by_name, drive_parameters)
     if "dq" in columns_by_name and "q" in columns_by_name:
-        _check_speed_column(log_columns, filter_values(columns_by_name["q"], step, 1), samples.dq)
-    _check_speeds(log_columns.path, samples, drive)
+        _check_speed_column(log_columns, filter_column_values(columns_by_name["q"], step, 1), samples.dq)
+    _check_speeds(log_columns.table_path, samples, drive_parameters)
     return samples.select_samples(np.arange(width // 2, even.size - width // 2, width))
 
 
-def _time_step(log_columns: columns.Columns) -> tuple[Array, float]:
+def _find_time_step(log_columns: columns.TableColumns) -> tuple[Array, float]:
     """Times (n) [s] of a log, and the time step [s] for resampling.
 
     Raises ValueError for times that do not increase, and for gaps.
     """
-    time = log_columns.columns["time"]
+    time = log_columns.values_by_name["time"]
     steps = np.diff(time)
     if np.any(wrong := steps <= 0.0):
         first = int(np.argmax(wrong))
         raise ValueError(
-            f"{log_columns.path}: line {log_columns.line_numbers[first + 1]}: time = "
-            f"{time[first + 1]:.9g} s after "
-            f"{time[first]:.9g} s runs back; expected rising times"
+            f"{log_columns.table_path}: line {log_columns.line_numbers[first + 1]}: time = "
+            f"{time[first + 1]:.9g} s after {time[first]:.9g} s runs back; expected rising times"
         )
     step = float(np.median(steps))
-    if np.any(wrong := steps > TIME_GAP_RATIO * step):
+    if np.any(wrong := steps > MIN_TIME_GAP_OVER_TIME_STEP * step):
         first = int(np.argmax(wrong))
         raise ValueError(
-            f"{log_columns.path}: line {log_columns.line_numbers[first + 1]}: a gap of "
-            f"{steps[first]:.4g} s, allowed is "
-            f"{TIME_GAP_RATIO * step:.4g} s; cut the log there, several files are read at once"
+            f"{log_columns.table_path}: line {log_columns.line_numbers[first + 1]}: a gap of "
+            f"{steps[first]:.4g} s, allowed is {MIN_TIME_GAP_OVER_TIME_STEP * step:.4g} s; cut the log "
+            "there, several files are read at once"
         )
-    if np.max(np.abs(steps - step)) < TIME_STEP_TOLERANCE * step:
+    if np.max(np.abs(steps - step)) < MAX_RELATIVE_TIME_STEP_DEVIATION * step:
         step = float(time[-1] - time[0]) / (time.size - 1)
     return time, step
 
 
-def _check_speed_column(log_columns: columns.Columns, derivative_of_q: Array, joint_speed: Array) -> None:
+def _check_speed_column(
+    log_columns: columns.TableColumns, derivative_of_q: Array, joint_speed: Array
+) -> None:
     """Check that dq is the derivative of q. Raises ValueError if not."""
     most = float(np.max(np.abs(derivative_of_q)))
     scale = float(joint_speed @ derivative_of_q / (derivative_of_q @ derivative_of_q)) if most else 0.0
     if (
         np.max(np.abs(joint_speed))
-        and not SPEED_OVER_DERIVATIVE_RANGE[0] <= scale <= SPEED_OVER_DERIVATIVE_RANGE[1]
+        and not SPEED_COLUMN_OVER_ANGLE_DERIVATIVE_RANGE[0]
+        <= scale
+        <= SPEED_COLUMN_OVER_ANGLE_DERIVATIVE_RANGE[1]
     ):
         hint = (
             "; likely one of them is in degrees"
@@ -418,36 +448,40 @@ def _check_speed_column(log_columns: columns.Columns, derivative_of_q: Array, jo
             else ""
         )
         raise ValueError(
-            f"{log_columns.path}: dq is {scale:.3g} times the derivative of q over time, expected 1{hint}"
+            f"{log_columns.table_path}: dq is {scale:.3g} times the derivative of q over time, expected "
+            f"1{hint}"
         )
 
 
-def _check_speeds(path: Path, samples: Samples, drive: DriveParameters) -> None:
+def _check_speeds(log_path: Path, log_samples: LogSamples, drive_parameters: DriveParameters) -> None:
     """Check the speeds of a log. Raises ValueError if nothing moves or a speed is implausible."""
-    ratio = abs(drive.ratio)
-    fastest = ratio * float(np.max(np.abs(samples.dq)))
+    ratio = abs(drive_parameters.ratio)
+    fastest = ratio * float(np.max(np.abs(log_samples.dq)))
     if fastest > MAX_MOTOR_SPEED:
         raise ValueError(
-            f"{path}: the joint's speed of {fastest / ratio:.4g} rad/s turns the motor with {fastest:.4g} "
-            f"rad/s, outside [0, {MAX_MOTOR_SPEED:g}]; likely angles are in degrees"
+            f"{log_path}: the joint's speed of {fastest / ratio:.4g} rad/s turns the motor with "
+            f"{fastest:.4g} rad/s, outside [0, {MAX_MOTOR_SPEED:g}]; likely angles are in degrees"
         )
     if fastest < MIN_MOTOR_SPEED:
         raise ValueError(
-            f"{path}: has no motion; expected speeds of the joint above {MIN_MOTOR_SPEED / ratio:.2g} rad/s"
+            f"{log_path}: has no motion; expected speeds of the joint above {MIN_MOTOR_SPEED / ratio:.2g} "
+            "rad/s"
         )
 
 
 def _check_motor_torque(
-    path: Path, samples: Samples, drive: DriveParameters, torque_constant: float | None
+    log_path: Path, log_samples: LogSamples, drive_parameters: DriveParameters, torque_constant: float | None
 ) -> None:
     """Check the motor torque of a log. Raises ValueError if it is implausible for the drive."""
-    limit = MAX_MOTOR_OVER_DRIVE_TORQUE * float(drive.max_table_torque) / abs(drive.ratio)
-    largest = float(np.max(np.abs(samples.motor_torque)))
+    limit = (
+        MAX_MOTOR_OVER_DRIVE_TORQUE * float(drive_parameters.max_table_torque) / abs(drive_parameters.ratio)
+    )
+    largest = float(np.max(np.abs(log_samples.motor_torque)))
     if largest > limit:
         advice = "expected that of the motor, not of the joint (--torque-at joint), of a drive as stated"
         if torque_constant is not None:
             advice = f"check --torque-constant = {torque_constant:g} N.m/A, and the size of the drive"
         raise ValueError(
-            f"{path}: a motor torque of {largest:.4g} N.m is outside [-{limit:.4g}, {limit:.4g}] N.m; "
+            f"{log_path}: a motor torque of {largest:.4g} N.m is outside [-{limit:.4g}, {limit:.4g}] N.m; "
             f"{advice}"
         )

@@ -16,39 +16,39 @@ from jointfmu.quantity.refusal import InputRefusal
 from ....common import columns
 from ....inputs.catalogue import SourcedNumber
 from ....inputs.fitting import backbone
-from ....inputs.fitting.least_squares import EMPTY_SOLUTION, Solution, solve
+from ....inputs.fitting.least_squares import SOLUTION_WITHOUT_UNKNOWNS, FitSolution, solve_least_squares
 from ....inputs.fitting.measurement import COLUMN_SYNONYMS
 from ....inputs.fitting.outcome import (
-    FitFacts,
+    DerivedFitValues,
     FitPlot,
     FitResult,
-    correlation_note,
-    fitted_parameters,
+    build_fitted_file,
+    make_fit_unknowns,
     make_predictor,
-    make_unknowns,
+    note_residual_correlation,
 )
 from . import drive
-from .drive import COLUMN_NAMES, COLUMN_UNITS, RAD_PER_ARCMIN
+from .drive import COLUMN_UNITS, LOOP_COLUMN_NAMES, RAD_PER_ARCMIN
 
-FITTED_PARAMETERS = ("K_FTS0", "drive_scale", "zero_torque_pressure")
+DEFAULT_FITTED_PARAMETERS = ("K_FTS0", "drive_scale", "zero_torque_pressure")
 """Parameters to fit; of the law `catalogue` they are K1, K2, K3."""
-MIN_POINTS = 10
+MIN_CURVE_POINT_COUNT = 10
 """Required number of points of a curve."""
 MAX_CREATED_ENERGY_OVER_TORQUE_ANGLE_RANGE = 0.01
 """Created energy of a loop, from noise or drift, over torque range times angle range [1] that is accepted."""
 
 
 @dataclass(frozen=True, slots=True)
-class MeasuredCurve:
+class MeasuredTorqueAngleCurve:
     """Measured torque-angle curve: file, midline (curve without hysteresis), scaled start parameters."""
 
-    path: Path
+    data_path: Path
     midline: backbone.Backbone
     start_file: ParameterFile
 
 
 def fit(
-    path: str | Path,
+    data_path: str | Path,
     start_parameters: ParameterFile | None = None,
     fitted_names: Sequence[str] | None = None,
     rated_torque: float | None = None,
@@ -61,10 +61,10 @@ def fit(
     Parameters
     ----------
     start_parameters : parameters to start from; None: the default drive
-    fitted_names     : names to fit; None: FITTED_PARAMETERS, or K1, K2, K3 for the law `catalogue`
+    fitted_names     : names to fit; None: DEFAULT_FITTED_PARAMETERS, or K1, K2, K3 for the law `catalogue`
     rated_torque     : [N.m]; max_torque and torque_smoothing of `start_parameters` are scaled with it; None:
                        that of `start_parameters`
-    law              : "table": use the midline itself, see `fit_table`; None: fit the law of
+    law              : "table": use the midline itself as a table, without a fit; None: fit the law of
                        `start_parameters`
 
     Raises ValueError with a one-line message for a bad file, unit or shape of the curve, a torque above
@@ -72,15 +72,20 @@ def fit(
     """
     if law == "table":
         if fitted_names:
-            raise ValueError("the law table has nothing to fit; --free is allowed without --law table")
-        return fit_table(path, start_parameters, rated_torque)
-    record = read_curve(path, start_parameters, rated_torque)
+            raise ValueError(
+                "--law table takes the measured midline and fits no parameters; leave out --free"
+            )
+        return make_drive_with_table_law(data_path, start_parameters, rated_torque)
+    record = read_torque_angle_curve(data_path, start_parameters, rated_torque)
     line, file = record.midline, record.start_file
     if file.law == "table":
-        raise ValueError(f"{record.path}: the law table has nothing to fit; --law table makes a new table")
+        raise ValueError(
+            f"{record.data_path}: the start file has the law table, which has nothing to fit; --law table "
+            "makes a new table"
+        )
     names = tuple(
         fitted_names
-        or (FITTED_PARAMETERS if file.law != "catalogue" else drive.STIFFNESS_PARAMETERS["catalogue"])
+        or (DEFAULT_FITTED_PARAMETERS if file.law != "catalogue" else drive.STIFFNESS_PARAMETERS["catalogue"])
     )
     centred = line.angle - np.interp(0.0, line.torque, line.angle)
     file = drive.scale_stiffness(file, names, line.torque, centred)
@@ -95,100 +100,105 @@ def fit(
         """Residuals of the angle, weighted by the number of averaged samples."""
         return np.asarray(weight * (line.angle - predicted_angle - mean_angle_offset(predicted_angle)) / size)
 
-    angles = make_predictor(file, lambda joint: drive.wind_up(joint, line.torque))
-    solution = solve(
-        make_unknowns(file, names, drive.parameter_bounds(file)),
+    angles = make_predictor(file, lambda joint: drive.compute_wind_up(joint, line.torque))
+    solution = solve_least_squares(
+        make_fit_unknowns(file, names, drive.parameter_bounds(file)),
         lambda values: weighted_residuals(angles(values)),
         nuisance_count=1,
     )
-    result = fitted_parameters(file, solution.values, "calibration", record.path.name, describe_range(line))
-    return make_result(
+    result = build_fitted_file(
+        file, solution.values, "calibration", record.data_path.name, describe_torque_range(line)
+    )
+    return make_fit_result(
         record, result, solution, mean_angle_offset(angles(solution.values)), solution.noise * size
     )
 
 
-def read_curve(
-    path: str | Path, start_parameters: ParameterFile | None, rated_torque: float | None
-) -> MeasuredCurve:
-    """Read the midline of a file and prepare the start parameters. Raises ValueError as `fit`."""
-    table = columns.read_columns(path, COLUMN_UNITS, MIN_POINTS, COLUMN_SYNONYMS)
+def read_torque_angle_curve(
+    data_path: str | Path, start_parameters: ParameterFile | None, rated_torque: float | None
+) -> MeasuredTorqueAngleCurve:
+    """Read a measured curve: midline (without hysteresis), and start parameters scaled to its stiffness.
+
+    Raises ValueError for a bad file, unit or shape of the curve, or a torque above max_torque of the law.
+    """
+    table = columns.read_columns(data_path, COLUMN_UNITS, MIN_CURVE_POINT_COUNT, COLUMN_SYNONYMS)
     torque, angle = (table.require_column(name, COLUMN_UNITS) for name in COLUMN_UNITS)
     try:
         line = backbone.find_backbone(torque, angle)
     except ValueError as error:
-        raise ValueError(f"{table.path}: {error}") from None
+        raise ValueError(f"{table.table_path}: {error}") from None
     start_file = start_parameters or load_default("harmonic_drive")
-    file = _resize_start_drive(start_file, line.torque, rated_torque, table.path)
+    file = _change_rated_torque_of_start_drive(start_file, line.torque, rated_torque, table.table_path)
     _check_wind_up_and_loop_energy(line, file, table)
     size = start_file.values.rated_torque / file.values.rated_torque
-    expected = float(np.ptp(drive.wind_up(start_file.values, size * line.torque)))
-    COLUMN_NAMES.check_stiffness_ratio(
-        table.path, expected / float(np.ptp(line.angle)), table.units, start_file
+    expected = float(np.ptp(drive.compute_wind_up(start_file.values, size * line.torque)))
+    LOOP_COLUMN_NAMES.check_stiffness_ratio(
+        table.table_path, expected / float(np.ptp(line.angle)), table.heading_units, start_file
     )
-    return MeasuredCurve(table.path, line, file)
+    return MeasuredTorqueAngleCurve(table.table_path, line, file)
 
 
-def describe_range(midline: backbone.Backbone) -> str:
+def describe_torque_range(midline: backbone.Backbone) -> str:
     """Describe the range of torques of a measured curve, as text."""
     return f"torque {midline.torque[0]:.4g} to {midline.torque[-1]:.4g} N.m"
 
 
-def make_result(
-    measured_curve: MeasuredCurve,
+def make_fit_result(
+    measured_curve: MeasuredTorqueAngleCurve,
     fitted_file: ParameterFile,
-    solution: Solution,
+    fit_solution: FitSolution,
     angle_offset: float,
     angle_noise: float,
 ) -> FitResult:
-    """Make the result of a fit: parameter file, facts, plot and notes.
+    """Make the result of a fit: parameter file, results for the user, plot and notes.
 
     angle_offset : [rad] angle at zero torque
     angle_noise  : [rad] standard deviation of one sample
     """
     line = measured_curve.midline
-    residuals = line.angle - drive.wind_up(fitted_file.values, line.torque) - angle_offset
+    residuals = line.angle - drive.compute_wind_up(fitted_file.values, line.torque) - angle_offset
     grid = np.linspace(line.torque[0], line.torque[-1], 400)
     picture = FitPlot(
         measured_x=line.torque,
         measured_y=(line.angle - angle_offset) / RAD_PER_ARCMIN,
         misfit=residuals / RAD_PER_ARCMIN,
-        law_curve=(grid, drive.wind_up(fitted_file.values, grid) / RAD_PER_ARCMIN),
+        law_curve=(grid, drive.compute_wind_up(fitted_file.values, grid) / RAD_PER_ARCMIN),
         axis_labels=("torque [N.m]", "wind-up [arcmin]", "data - law [arcmin]"),
     )
     return FitResult(
         fitted_file,
-        solution,
-        _curve_facts(line, angle_offset, residuals, angle_noise),
+        fit_solution,
+        _describe_curve(line, angle_offset, residuals, angle_noise),
         [picture],
-        notes=_curve_notes(line, residuals),
+        notes=_find_curve_notes(line, residuals),
     )
 
 
-def _resize_start_drive(
-    start_file: ParameterFile, torque: Array, rated_torque: float | None, path: Path
+def _change_rated_torque_of_start_drive(
+    start_file: ParameterFile, measured_torques: Array, rated_torque: float | None, data_path: Path
 ) -> ParameterFile:
-    """Start parameters for a drive of the stated rated torque [N.m].
+    """Change the start parameters to a drive of the stated rated torque [N.m].
 
     Raises InputRefusal if the measured torque (n) [N.m] exceeds max_torque of the law.
     """
-    drive_, reach = start_file.values, float(np.max(np.abs(torque)))
+    drive_, reach = start_file.values, float(np.max(np.abs(measured_torques)))
     if rated_torque is not None:
         factor = drive_.max_table_torque / drive_.rated_torque
-        start_file = drive.resize_drive(
+        start_file = drive.change_rated_torque(
             start_file, rated_torque, factor, "user", "stated with the torque-angle curve"
         )
     if isinstance(start_file.values, ContactPairDriveParameters) and reach > start_file.values.max_torque:
         raise InputRefusal(
-            f"{path}: torque reaches {reach:g} N.m, beyond max_torque = "
-            f"{start_file.values.max_torque:g} N.m of "
-            f"{start_file.name}: state the drive's rated torque, max_torque is scaled with it",
+            f"{data_path}: torque reaches {reach:g} N.m, beyond max_torque = "
+            f"{start_file.values.max_torque:g} N.m of {start_file.name}: state the drive's rated torque, "
+            "max_torque is scaled with it",
             "rated_torque",
         )
     return start_file
 
 
 def _check_wind_up_and_loop_energy(
-    midline: backbone.Backbone, start_file: ParameterFile, measured_columns: columns.Columns
+    midline: backbone.Backbone, start_file: ParameterFile, measured_columns: columns.TableColumns
 ) -> None:
     """Check wind-up and loop energy before the fit.
 
@@ -197,15 +207,15 @@ def _check_wind_up_and_loop_energy(
     """
     angle_range, torque_range = float(np.ptp(midline.angle)), float(np.ptp(midline.torque))
     rated = start_file.values.rated_torque
-    low, high = drive.WIND_UP_RANGE
-    path, at_rated = measured_columns.path, angle_range * rated / torque_range
+    low, high = drive.PLAUSIBLE_WIND_UP_RANGE
+    path, at_rated = measured_columns.table_path, angle_range * rated / torque_range
     if not low <= at_rated <= high:
         typical = float(np.sqrt(low * high))
+        units = measured_columns.heading_units
         raise InputRefusal(
             f"{path}: the angle turns {angle_range:.3g} rad over {torque_range:.3g} N.m, that is "
             f"{at_rated:.3g} rad at the rated torque {rated:g} N.m, allowed are {low:g} to {high:g}: "
-            f"{COLUMN_NAMES.describe_likely_unit_error(typical / at_rated, measured_columns.units)}, "
-            "or state the "
+            f"{LOOP_COLUMN_NAMES.describe_likely_unit_error(typical / at_rated, units)}, or state the "
             "drive's rated torque",
             "rated_torque",
         )
@@ -220,10 +230,10 @@ def _check_wind_up_and_loop_energy(
             )
 
 
-def _curve_facts(
-    midline: backbone.Backbone, angle_offset: float, residuals: Array, angle_noise: float
-) -> FitFacts:
-    """Facts about the measured curve: offset, loop area, backlash, drift, noise, largest error."""
+def _describe_curve(
+    midline: backbone.Backbone, angle_offset: float, angle_residuals: Array, angle_noise: float
+) -> DerivedFitValues:
+    """Describe the measured curve: offset, loop area, backlash, drift, noise, largest error."""
     facts = {
         "points": (float(np.sum(midline.sample_counts)), "1", "samples used"),
         "branches": (float(midline.branch_count), "1", "branches used"),
@@ -239,53 +249,62 @@ def _curve_facts(
             facts[name] = (value[0], unit, text)
             facts[f"{name}_deviation"] = (value[1], unit, "its standard deviation")
     facts["noise"] = (angle_noise, "rad", "standard deviation of one sample about the fitted law")
-    facts["largest_misfit"] = (float(np.max(np.abs(residuals))), "rad", "of the mid-line from the fitted law")
+    facts["largest_misfit"] = (
+        float(np.max(np.abs(angle_residuals))),
+        "rad",
+        "of the mid-line from the fitted law",
+    )
     return facts
 
 
-def _curve_notes(midline: backbone.Backbone, residuals: Array) -> list[str]:
+def _find_curve_notes(midline: backbone.Backbone, angle_residuals: Array) -> list[str]:
     """Notes about quantities that the curve does not determine, and about systematic errors of the law."""
     notes = []
     if midline.loop_area is None:
-        notes.append("one direction of loading only: loop area, backlash and drift cannot be told")
+        notes.append(
+            "the torque was applied in one direction only: loop area, backlash and drift are not determined"
+        )
     elif midline.drift is None:
-        notes.append("a single loop that is not closed: a drift cannot be told from the loop")
-    return notes + correlation_note(residuals, "curve")
+        notes.append("the record is a single loop that is not closed: drift and loop cannot be separated")
+    return notes + note_residual_correlation(angle_residuals, "curve")
 
 
-MAX_TABLE_POINTS, MIN_TABLE_POINTS = 24, 4
+MAX_TABLE_POINT_COUNT, MIN_TABLE_POINT_COUNT = 24, 4
 """Largest and smallest number of points of a table; noise reduces it until the torques and angles ascend."""
 TABLE_SPACING_EXPONENT = 1.5
 """Exponent of the spacing of the points [1]; above 1 they are closer near zero torque."""
 
 
-def fit_table(
-    path: str | Path, start_parameters: ParameterFile | None = None, rated_torque: float | None = None
+def make_drive_with_table_law(
+    data_path: str | Path, start_parameters: ParameterFile | None = None, rated_torque: float | None = None
 ) -> FitResult:
-    """Make a drive with the law `table` from a file with the columns torque and angle, read as in `fit`.
+    """Make a drive with the law `table` from a measured file with the columns torque and angle.
 
     The law is odd: values at negative and at positive torques are averaged.
 
-    Raises ValueError as `fit`, and for a curve that does not include zero torque or does not rise.
+    Raises ValueError for a bad file or unit, and for a curve that does not include zero torque or does not
+    rise.
     """
-    record = read_curve(path, start_parameters, rated_torque)
+    record = read_torque_angle_curve(data_path, start_parameters, rated_torque)
     line, start_file = record.midline, record.start_file
     try:
-        torque, angle, offset = table_points(line)
+        torque, angle, offset = make_table_points(line)
     except ValueError as error:
-        raise ValueError(f"{record.path}: {error}") from None
-    name, values = record.path.name, dict[str, Any]()
+        raise ValueError(f"{record.data_path}: {error}") from None
+    name, values = record.data_path.name, dict[str, Any]()
     values["table.torque"] = tuple(torque.tolist())
     values["table.angle"] = tuple(angle.tolist())
     table = {label: SourcedNumber(column, "calibration", name) for label, column in values.items()}
     file = drive.change_law(start_file, TableDriveParameters, name, table)
-    file = replace(fitted_parameters(file, values, "calibration", name, describe_range(line)), name=name)
-    residuals = line.angle - offset - drive.wind_up(file.values, line.torque)
+    file = replace(
+        build_fitted_file(file, values, "calibration", name, describe_torque_range(line)), name=name
+    )
+    residuals = line.angle - offset - drive.compute_wind_up(file.values, line.torque)
     noise = float(np.sqrt(np.average(line.sample_counts * residuals**2)))
-    return make_result(record, file, EMPTY_SOLUTION, offset, noise)
+    return make_fit_result(record, file, SOLUTION_WITHOUT_UNKNOWNS, offset, noise)
 
 
-def table_points(midline: backbone.Backbone) -> tuple[Array, Array, float]:
+def make_table_points(midline: backbone.Backbone) -> tuple[Array, Array, float]:
     """Torques (n) [N.m] and angles (n) [rad] of a measured midline, and the angle at zero torque [rad].
 
     The points are those of the law `table`.
@@ -294,13 +313,15 @@ def table_points(midline: backbone.Backbone) -> tuple[Array, Array, float]:
     """
     low, high = midline.torque[0], midline.torque[-1]
     if low * high > 0.0 and min(abs(low), abs(high)) > 0.05 * (high - low):
-        raise ValueError(f"the torque goes from {low:.4g} to {high:.4g} N.m; a table needs it to pass zero")
+        raise ValueError(
+            f"the torque goes from {low:.4g} to {high:.4g} N.m; a table needs torques on both sides of zero"
+        )
     common_torques = np.linspace(0.0, max(min(-low, high), 0.0), 41)
     offset = float(
         np.mean([np.interp(sign * common_torques, midline.torque, midline.angle) for sign in (-1.0, 1.0)])
     )
     size, angle = np.abs(midline.torque), np.sign(midline.torque) * (midline.angle - offset)
-    for count in range(MAX_TABLE_POINTS, MIN_TABLE_POINTS - 1, -1):
+    for count in range(MAX_TABLE_POINT_COUNT, MIN_TABLE_POINT_COUNT - 1, -1):
         edges = size.max() * np.linspace(0.0, 1.0, count + 1) ** TABLE_SPACING_EXPONENT
         bin_index = np.clip(np.searchsorted(edges, size, side="left") - 1, 0, count - 1)
         weight = np.bincount(bin_index, midline.sample_counts, count)
@@ -311,4 +332,7 @@ def table_points(midline: backbone.Backbone) -> tuple[Array, Array, float]:
         ]
         if all(x[0] > 0.0 and np.all(np.diff(x) > 0.0) for x in means):
             return means[0], means[1], offset
-    raise ValueError(f"the mid-line does not rise from one of {MIN_TABLE_POINTS} points to the next")
+    raise ValueError(
+        f"the midline falls between some of {MIN_TABLE_POINT_COUNT} points; expected an angle that rises "
+        "with the torque: check the columns"
+    )

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from jointfmu.joints.harmonic_drive.drive import PLAY_OVER_RATED_TORQUE, DriveParameters
+from jointfmu.joints.harmonic_drive.drive import PLAY_TORQUE_OVER_RATED_TORQUE, DriveParameters
 from jointfmu.joints.harmonic_drive.friction import (
     PRIOR_ROTATION_TIME,
     REFERENCE_TEMPERATURE,
@@ -22,8 +22,8 @@ from ....exchange.modelica.records import (
     WorkingPoint,
     decimate_curve,
     format_computed_values,
+    format_double_literal,
     format_matrix,
-    format_number,
     format_parameter_values,
     make_identifier,
 )
@@ -31,7 +31,7 @@ from ....exchange.modelica.records import (
 _RECORD_ONLY_PARAMETERS = ("hysteresis_loss", "hysteresis_stiffness", "lost_motion", "inertia1", "inertia2")
 """Parameters of the drive without a parameter of their own in the component: they are in the table and in the
 sliders of the record, or only the FMU uses them."""
-_COMPONENT_PARAMETERS = tuple(
+_MODELICA_COMPONENT_PARAMETERS = tuple(
     name for name, _ in flatten_fields(DriveParameters) if name not in _RECORD_ONLY_PARAMETERS
 )
 """Parameters of the drive that are parameters of the component, too."""
@@ -43,23 +43,23 @@ def _make_records(
     """Make the Modelica records of a parameter file; a drive has one."""
     drive = parameter_file.values
     spring = HarmonicDriveSpring.tabulate(drive)
-    stated = format_parameter_values({name: getattr(drive, name) for name in _COMPONENT_PARAMETERS})
+    stated = format_parameter_values({name: getattr(drive, name) for name in _MODELICA_COMPONENT_PARAMETERS})
     stated |= format_parameter_values({"T": parameter_file.start_value("temperature")})
     derived = format_computed_values({"K_FTS0": drive.K_FTS} | _hysteresis_totals(spring))
     sliders = np.array(slider_shares(stiffness_exponent(drive)), dtype=np.float64).T
     return [
         ModelicaRecord(
-            name=make_identifier(parameter_file.name),
-            title=parameter_file.name,
-            table=decimate_curve(spring.curve),
-            values=stated | derived | {"sliders": format_matrix(sliders)},
+            record_name=make_identifier(parameter_file.name),
+            record_title=parameter_file.name,
+            interpolation_table=decimate_curve(spring.curve),
+            value_expressions=stated | derived | {"sliders": format_matrix(sliders)},
         )
     ]
 
 
-def _hysteresis_totals(spring: HarmonicDriveSpring) -> dict[str, float]:
+def _hysteresis_totals(drive_spring: HarmonicDriveSpring) -> dict[str, float]:
     """Total friction limit [N.m] of the hysteresis sliders, and their total stiffness [N.m/rad] in stick."""
-    sliders = spring.hysteresis
+    sliders = drive_spring.hysteresis
     return {
         "hysteresis_friction": float(np.sum(sliders.friction_limit)),
         "hysteresis_stiffness": float(np.sum(sliders.stiffness)),
@@ -67,7 +67,7 @@ def _hysteresis_totals(spring: HarmonicDriveSpring) -> dict[str, float]:
 
 
 MODELICA_COMPONENT = ModelicaComponent(
-    name="HarmonicDriveSpring",
+    component_name="HarmonicDriveSpring",
     base_record="HarmonicDrive",
     make_records=_make_records,
     system_parameters=lambda file: format_computed_values(
@@ -79,9 +79,9 @@ MODELICA_COMPONENT = ModelicaComponent(
     make_template_texts=lambda drive: {
         "end": f"{drive.max_load:g} N m",
         "brakes": format_matrix(np.column_stack([SLIDER_STIFFNESS_SHARES, SLIDER_LIMIT_SHARES])),
-        "turned": format_number(PRIOR_ROTATION_TIME),
-        "reference": format_number(REFERENCE_TEMPERATURE),
-        "width": format_number(PLAY_OVER_RATED_TORQUE),
+        "turned": format_double_literal(PRIOR_ROTATION_TIME),
+        "reference": format_double_literal(REFERENCE_TEMPERATURE),
+        "width": format_double_literal(PLAY_TORQUE_OVER_RATED_TORQUE),
     },
     package_note="For the drive with a locked wave generator (the FMU "
     "<code>HarmonicDriveCompliance</code>) fix "

@@ -10,7 +10,7 @@
   end << record.name >>;
 <% endfor %>
 <%- for part in parts %>
-  << part.type >> << part.name >><% if part.modifications %>(<< part.modifications >>)<% endif %>
+  << part.component_type >> << part.component_name >><% if part.modifications %>(<< part.modifications >>)<% endif %>
     annotation (Placement(transformation(extent={{<< part.diagram_x - 10 >>,<< part.diagram_y - 10 >>},{<< part.diagram_x + 10 >>,<< part.diagram_y + 10 >>}})));
 <%- endfor %>
 equation
