@@ -264,9 +264,16 @@ def scaling():
         size = 1e3 if digits == 0 else 1.0
         numbers = [
             f"{size * x:.{digits}f}"
-            for x in (printed, found.central_value, found.interval_low, found.interval_high)
+            for x in (
+                printed,
+                found.central_value,
+                found.prediction_interval_low,
+                found.prediction_interval_high,
+            )
         ]
-        mark = "" if found.interval_low <= printed <= found.interval_high else ", outside"
+        mark = (
+            "" if found.prediction_interval_low <= printed <= found.prediction_interval_high else ", outside"
+        )
         rows.append((name, f"{quantity} {unit}", *numbers[:2], f"{numbers[2]} to {numbers[3]}{mark}"))
     print_table(("drive", "of it", "printed", "from the others", "95 % interval"), rows)
 

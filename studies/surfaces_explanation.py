@@ -70,9 +70,9 @@ def errors(heights, direction, D, G):
         d, g = one.profile_fractal.D, one.areal_fractal.G_s if direction == "areal" else one.profile_fractal.G
         row[name] = (
             d.estimated_value - D,
-            d.interval_low <= D <= d.interval_high,
+            d.confidence_interval_low <= D <= d.confidence_interval_high,
             np.log(g.estimated_value / G),
-            g.interval_low <= G <= g.interval_high,
+            g.confidence_interval_low <= G <= g.confidence_interval_high,
         )
     return row
 

@@ -12,7 +12,7 @@ calculix           : loop of a lap joint in CalculiX with *FRICTION (on request;
 brake-reuss        : first frequency and damping of the Brake-Reuss beam, and published curves; --images
 brake-reuss-form   : the same with the scanned form of the lap
 brake-reuss-meshes : first frequency on other meshes (on request)
-measured-beam      : a measured lapped beam with unknown torque, friction and faces
+measured-beam      : a measured beam with a lap joint, unknown torque, friction and faces
 """
 
 import argparse

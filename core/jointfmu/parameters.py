@@ -44,7 +44,7 @@ VALUE_ORIGINS = (
 )
 """Origin of a value (`kind`): printed in a paper or handbook, a standard, a maker's catalogue, measured,
 computed from other values, an engineering estimate, fitted to points, a default, or set by the user."""
-ORIGIN_ALIASES = {"published": "paper"}
+VALUE_ORIGIN_BY_FORMER_NAME = {"published": "paper"}
 """{former name of an origin: its name}."""
 _DEFAULT_SOURCE_TEXT = "default choice"
 """Beginning of the source text of a value that is a default."""
@@ -150,7 +150,7 @@ class ParameterFile:
         heights. Raises ValueError as `roughness.check_heights` does.
         """
         new_heights = roughness.check_heights(surface_heights, self.heights_prefix)
-        replaced = {other for name in new_heights for other in roughness.conflicting_heights(name)}
+        replaced = {other for name in new_heights for other in roughness.find_conflicting_height_names(name)}
         replaced_names = {self.heights_prefix + name for name in replaced}
         new_names = [self.heights_prefix + name for name in new_heights]
         all_heights = _drop_entries(replaced, self.roughness) | new_heights
@@ -179,7 +179,7 @@ def _convert_former_origin(value_origin: str, source_text: str) -> str:
     """
     if value_origin == "user" and source_text.startswith(_DEFAULT_SOURCE_TEXT):
         return "default"
-    return ORIGIN_ALIASES.get(value_origin, value_origin)
+    return VALUE_ORIGIN_BY_FORMER_NAME.get(value_origin, value_origin)
 
 
 def load_parameter_file(parameter_path: str | Path, joint_name: str | None = None) -> ParameterFile:
@@ -355,7 +355,7 @@ def read_entries(
             unit = declared_fields[name].metadata.get("unit")
             if entry.get("unit") != unit:
                 raise ValueError(f"{parameter_path}: {name}: unit {entry.get('unit')!r}, expected {unit!r}")
-        if entry.get("kind") not in (*VALUE_ORIGINS, *ORIGIN_ALIASES):
+        if entry.get("kind") not in (*VALUE_ORIGINS, *VALUE_ORIGIN_BY_FORMER_NAME):
             raise ValueError(
                 f"{parameter_path}: {name}: kind = {entry.get('kind')!r}, allowed are "
                 f"{', '.join(VALUE_ORIGINS)}"

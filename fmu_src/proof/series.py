@@ -75,8 +75,8 @@ def parse_time_series_csv(csv_text: str, csv_file_name: str) -> TimeSeries:
     for i, row in enumerate(rows[1:], 1):
         if len(row) != len(head):
             raise ValueError(
-                f"{csv_file_name}: row {i} has {len(row)} numbers, expected {len(head)}, one for each "
-                f"column: {','.join(row)[:60]!r}"
+                f"{csv_file_name}: row {i} below the header has {len(row)} numbers, expected {len(head)}, as "
+                f"many as columns; the row is {','.join(row)[:60]!r}"
             )
         try:
             numbers.append([float(cell) for cell in row])

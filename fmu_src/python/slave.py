@@ -56,7 +56,10 @@ def protect_reference_counts(
 
     @wraps(slave_method)
     def call_with_protected_references(self: Any, *args: Any) -> MethodReturnValue:
-        """Call the wrapped method; after an exception add a reference to instance, class and log queue."""
+        """Call the wrapped method; after an exception restore the references that pythonfmu wrongly releases.
+
+        One reference is added to the instance, its class and its log queue, which Python would delete in use.
+        """
         try:
             return slave_method(self, *args)
         except Exception:

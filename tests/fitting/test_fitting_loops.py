@@ -207,7 +207,7 @@ def test_motion_at_the_turning_points_is_part_of_the_doubt():
     """The turning points of a coarsely sampled motion have a deviation of the order of half a step."""
     motion = np.abs((np.arange(200) * 0.07 + 0.03) % 4.0 - 2.0)
     found = branches.cut_branches([("", motion, 2.0 * motion)])
-    assert np.all(found.branch_start_motion_deviation > 0.02)
+    assert np.all(found.branch_start_motion_standard_deviation > 0.02)
 
 
 # Round trips

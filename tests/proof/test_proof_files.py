@@ -298,7 +298,7 @@ def test_a_jump_is_taken_where_it_stands() -> None:
         ("u,time\n0,0\n", "the first column is 'u', expected 'time'"),
         ("time,u\n", "no rows below its header"),
         ("time,u,u\n0,1,2\n", "column 'u' is given twice"),
-        ("time,u\n0,1\n1\n", "row 2 has 1 numbers, expected 2"),
+        ("time,u\n0,1\n1\n", "row 2 below the header has 1 numbers, expected 2"),
         ("time,u\n0,one\n", "'one'; expected a number for each column"),
         ("time,u\n1,1\n0,1\n", "row 2: time = 0 s; expected finite times that never decrease"),
         ("time,u\nnan,1\n", "row 1: time = nan s; expected finite times"),

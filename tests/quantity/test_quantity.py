@@ -202,11 +202,13 @@ def test_a_set_has_one_of_the_alternatives(values):
 def test_names_of_two_alternatives_are_refused_whatever_their_number(most):
     values = most | {"round.radius": 2.0, "square.side": 2.0}
     corner = ", square.corner" if most is SQUARE else ""
-    text = f"round.radius with square.side{corner}: state parameters of only one section, [round] or [square]"
+    text = f"round.radius together with square.side{corner}: state parameters of only one section, "
+    text += "[round] or [square]"
     with pytest.raises(ValueError, match=f"^{re.escape(text)}$"):
         build_parameter_set(Hole, values)
     with pytest.raises(
-        ValueError, match=r"^hole.round.radius with .* only one section, \[hole.round\] or \[hole.square\]$"
+        ValueError,
+        match=r"^hole.round.radius together with .* only one section, \[hole.round\] or \[hole.square\]$",
     ):
         build_parameter_set(Part, nested(values))
 

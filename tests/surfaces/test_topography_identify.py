@@ -100,7 +100,9 @@ def test_round_trip_of_isotropic_surfaces(D, G):
         assert one.areal_fractal.D_s.estimated_value == pytest.approx(
             D + 1, abs=0.03
         )  # the tolerance that is promised
-        assert one.areal_fractal.G_s.interval_low < G < one.areal_fractal.G_s.interval_high
+        assert (
+            one.areal_fractal.G_s.confidence_interval_low < G < one.areal_fractal.G_s.confidence_interval_high
+        )
 
 
 @pytest.mark.parametrize("D", [1.2, 1.4, 1.6, 1.8])
@@ -109,7 +111,9 @@ def test_round_trip_of_profiles(D, G):
     for seed in (1, 2):
         one = identify_surface([synthesis.synthesize_profile(waves(4096), D, G, seed)]).select_best_result()
         assert one.profile_fractal.D.estimated_value == pytest.approx(D, abs=0.03)
-        assert one.profile_fractal.G.interval_low < G < one.profile_fractal.G.interval_high
+        assert (
+            one.profile_fractal.G.confidence_interval_low < G < one.profile_fractal.G.confidence_interval_high
+        )
         assert one.areal_fractal.D_s.estimated_value == pytest.approx(
             one.profile_fractal.D.estimated_value + 1.0, rel=1e-12
         )
@@ -123,8 +127,8 @@ def test_textured_surfaces_are_told_by_direction():
     x, y = found.select_best_result("x"), found.select_best_result("y")
     assert x.profile_fractal.D.estimated_value == pytest.approx(1.3, abs=0.03)
     assert y.profile_fractal.D.estimated_value == pytest.approx(1.6, abs=0.03)
-    assert x.profile_fractal.G.interval_low < 1e-9 < x.profile_fractal.G.interval_high
-    assert y.profile_fractal.G.interval_low < 1e-10 < y.profile_fractal.G.interval_high
+    assert x.profile_fractal.G.confidence_interval_low < 1e-9 < x.profile_fractal.G.confidence_interval_high
+    assert y.profile_fractal.G.confidence_interval_low < 1e-10 < y.profile_fractal.G.confidence_interval_high
     assert not identify_surface([synthesis.synthesize_isotropic(waves(128), 2.5, 1e-9, 20, 1)]).is_textured
 
 
@@ -188,7 +192,7 @@ def test_at_the_bound_of_the_dimension_G_is_not_determined(points):
     )  # 2 less the bound of H in the fit
     for G in (best.profile_fractal.G, best.areal_fractal.G_s):
         assert not G.is_determined
-        assert np.isnan([G.estimated_value, G.interval_low, G.interval_high]).all()
+        assert np.isnan([G.estimated_value, G.confidence_interval_low, G.confidence_interval_high]).all()
         assert 200.0 < G.interval_decades < 1000.0  # ln G = .../(2 (D - 1)), 1/(2 * 0.005) = 100 at most
     (text,) = [text for text in found.warnings if text.startswith("G is not determined")]
     assert f"spans {best.profile_fractal.G.interval_decades:.1f} decades" in text
@@ -234,7 +238,7 @@ def test_the_command_says_that_G_is_not_determined(tmp_path, capsys):
 def test_roughness_leaves_the_floating_point_numbers():
     inside = FractalRoughnessEstimate.from_logarithms(-300.0, -700.0, 100.0)
     assert inside.is_determined
-    assert (inside.estimated_value, inside.interval_low, inside.interval_high) == tuple(
+    assert (inside.estimated_value, inside.confidence_interval_low, inside.confidence_interval_high) == tuple(
         np.exp([-300.0, -700.0, 100.0])
     )
     for value, low, high in ((-300.0, -800.0, 0.0), (-750.0, -760.0, -740.0), (600.0, 500.0, 800.0)):
@@ -248,7 +252,9 @@ def test_pair_adds_the_powers():
     one, other = (gaussian_profile(4096, 0.5, 1e-9, seed) for seed in (1, 2))
     pair = identify_surface([one, other]).select_best_result(series_method="psd")
     assert (
-        pair.profile_fractal.G.interval_low < 2e-9 < pair.profile_fractal.G.interval_high
+        pair.profile_fractal.G.confidence_interval_low
+        < 2e-9
+        < pair.profile_fractal.G.confidence_interval_high
     )  # D = 1.5: G doubles
     coarse = Profile(z=other.z[::2].copy(), dx=2 * other.dx, scan_name="coarse")
     again = identify_surface([one, coarse]).select_best_result(series_method="structure")
@@ -336,8 +342,8 @@ def test_intervals_apart_leave_the_dimension_open():
     first, second = found.fractal_results
     D = replace(
         second.profile_fractal.D,
-        interval_low=first.profile_fractal.D.interval_high + 0.01,
-        interval_high=first.profile_fractal.D.interval_high + 0.1,
+        confidence_interval_low=first.profile_fractal.D.confidence_interval_high + 0.01,
+        confidence_interval_high=first.profile_fractal.D.confidence_interval_high + 0.1,
     )
     other = replace(second, profile_fractal=replace(second.profile_fractal, D=D))
     apart = replace(found, fractal_results=(first, other))

@@ -56,7 +56,7 @@ def _run_command(args: Any, command_name: str) -> int:
         return 2
     try:
         with show_status(command_name):
-            outputs.check_command_outputs(args.outputs, args)
+            outputs.check_command_output_paths(args.outputs, args)
             status = int(args.run(args).print_result(args.json))
         print(end="", flush=True)
         return status

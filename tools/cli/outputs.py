@@ -37,7 +37,7 @@ def declare_output(
         parser.add_argument("--force", action="store_true", help=FORCE_OPTION_HELP)
 
 
-def check_command_outputs(output_file_kinds: Mapping[str, FileKind], args: argparse.Namespace) -> None:
+def check_command_output_paths(output_file_kinds: Mapping[str, FileKind], args: argparse.Namespace) -> None:
     """Raise ValueError before the work starts if a command may not or cannot write one of its outputs.
 
     output_file_kinds : {argument: kind of file} as declared

@@ -51,7 +51,9 @@ class JointToolModules:
         )
         faults |= {name: "has no module" for name in self.modules.values() if name not in existing}
         for name, text in faults.items():
-            raise ImportError(f"{package_name}.{name} {text}; expected parts of {', '.join(TOOL_NAMES)}")
+            raise ImportError(
+                f"{package_name}.{name} {text}; expected modules with these names: {', '.join(TOOL_NAMES)}"
+            )
 
     @property
     def joint_folder(self) -> Path:

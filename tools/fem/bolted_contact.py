@@ -133,7 +133,7 @@ class JointSolution:
         """Positions (k, 2) [m] midway between neighbouring bolts, and contact pressure (k) [Pa] there."""
         positions = bolt_midpoints(self.bolted_contact.assembly.bolts.bolt_positions)
         sides = (self.bolted_contact.assembly.side1, self.bolted_contact.assembly.side2)
-        solid = [side.layers()[0].is_in_material(*positions.T) for side in sides]
+        solid = [side.list_rectangular_layers()[0].is_in_material(*positions.T) for side in sides]
         positions = positions[solid[0] & solid[1]]
         return positions, self.contact_solution.pressure_at(positions) if len(positions) else np.zeros(0)
 

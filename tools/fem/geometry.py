@@ -126,8 +126,8 @@ class Plate(CheckedParameters):
         """Thickness [m] of the plate under the head of a bolt."""
         return self.thickness
 
-    def layers(self) -> tuple[Layer, ...]:
-        """Layers of the plate, from the contact outward."""
+    def list_rectangular_layers(self) -> tuple[Layer, ...]:
+        """Rectangular slab of which the plate consists, as a tuple of one layer."""
         return (Layer(0.0, self.thickness, (0.5 * self.length, 0.5 * self.width), has_bolt_holes=True),)
 
 
@@ -145,8 +145,8 @@ class TappedPlate(Plate):
                 f"{self.depth:g} m; increase thickness or reduce depth"
             )
 
-    def layers(self) -> tuple[Layer, ...]:
-        """Layers of the tapped plate, from the contact outward."""
+    def list_rectangular_layers(self) -> tuple[Layer, ...]:
+        """Rectangular slabs of the tapped plate, from the contact plane outward: with bolt holes, without."""
         half = (0.5 * self.length, 0.5 * self.width)
         return Layer(0.0, self.depth, half, has_bolt_holes=True), Layer(self.depth, self.thickness, half)
 
@@ -188,8 +188,8 @@ class BoxSection:
         """Thickness [m] of the flange under the head of a bolt."""
         return self.flange_thickness
 
-    def layers(self) -> tuple[Layer, ...]:
-        """Layers of the box, from the contact outward."""
+    def list_rectangular_layers(self) -> tuple[Layer, ...]:
+        """Rectangular slabs of the box, from the contact plane outward: flange, walls, floor (if any)."""
         opening = self._half_lengths(self.flange_width)
         outside, inside = self._half_lengths(self.wall_inset), self._half_lengths(self.wall_inset + self.wall)
         base, end = self.flange_thickness, self.height - self.floor
@@ -235,7 +235,7 @@ class Assembly:
     @property
     def contact_area(self) -> float:
         """Nominal contact area [m2] of the two bodies, without the bolt holes."""
-        layers = [body.layers()[0] for body in (self.side1, self.side2)]
+        layers = [body.list_rectangular_layers()[0] for body in (self.side1, self.side2)]
         outer = np.min([layer.outline_half_lengths for layer in layers], axis=0)
         inner1, inner2 = (np.minimum(layer.opening_half_lengths, outer) for layer in layers)
         opening = 4.0 * (inner1.prod() + inner2.prod() - np.minimum(inner1, inner2).prod())
@@ -315,7 +315,7 @@ def _find_bolt_head_obstacle(
     body: BodyGeometry, bolt_x: float, bolt_y: float, head_radius: float
 ) -> str | None:
     """Reason why a bolt head (a disc) does not lie flat on a body; None if it does."""
-    flange, *rest = body.layers()
+    flange, *rest = body.list_rectangular_layers()
     if isinstance(body, TappedPlate):
         return None  # no head lies on a tapped plate
     if not _contains_disc(bolt_x, bolt_y, head_radius, flange.outline_half_lengths) or _overlaps_disc(
@@ -355,7 +355,7 @@ def layer_rectangles(assembly: Assembly) -> Iterator[tuple[float, float]]:
     """Half lengths (2) [m] of all outlines and openings of the layers of both bodies, without duplicates."""
     known_keys: set[tuple[float, float]] = set()
     for body in (assembly.side1, assembly.side2):
-        for layer in body.layers():
+        for layer in body.list_rectangular_layers():
             for half in (layer.outline_half_lengths, layer.opening_half_lengths):
                 key = (round(half[0], 9), round(half[1], 9))
                 if min(half) > 0.0 and key not in known_keys:

@@ -53,7 +53,10 @@ class PlanMesh:
 
 def find_contact_cells(plan_mesh: PlanMesh, assembly: Assembly) -> NDArray[np.bool_]:
     """Whether the two bodies touch in each cell (m) of the plan."""
-    cells1, cells2 = (plan_mesh.is_in_material(body.layers()[0]) for body in (assembly.side1, assembly.side2))
+    cells1, cells2 = (
+        plan_mesh.is_in_material(body.list_rectangular_layers()[0])
+        for body in (assembly.side1, assembly.side2)
+    )
     return cells1 & cells2
 
 
@@ -74,7 +77,7 @@ def element_sizes(assembly: Assembly, refinement: float) -> tuple[float, float]:
 
 def _width_of_narrowest_strip(body: BodyGeometry) -> float:
     """Width [m] of the narrowest strip of the contact face of a body."""
-    contact = body.layers()[0]
+    contact = body.list_rectangular_layers()[0]
     widths = [o - i for o, i in zip(contact.outline_half_lengths, contact.opening_half_lengths, strict=True)]
     return float(min(widths))
 
@@ -216,7 +219,7 @@ def extrude_body_mesh(
     body = assembly.side1 if side_number == 1 else assembly.side2
     max_height = 2.0 * element_sizes(assembly, refinement)[1]
     heights, owner = extruded_element_levels(body, refinement, max_height, first_element_height)
-    count, layers = plan_mesh.node_positions.shape[1], body.layers()
+    count, layers = plan_mesh.node_positions.shape[1], body.list_rectangular_layers()
     lower, upper = [], []
     for k, layer_index in enumerate(owner):
         cells = plan_mesh.cell_corners[:, plan_mesh.is_in_material(layers[layer_index])]
@@ -260,7 +263,7 @@ def extruded_element_levels(
     first_element_height : [m] height of the elements under the bolt heads; None: equal heights in a layer
     """
     heights, owner = [0.0], []
-    for layer_index, layer in enumerate(body.layers()):
+    for layer_index, layer in enumerate(body.list_rectangular_layers()):
         thickness = layer.top_distance - layer.bottom_distance
         min_rows = ELEMENTS_THROUGH_THICKNESS if layer_index == 0 else 1
         rows = max(round(min_rows * refinement), int(np.ceil(thickness / max_element_height - 1e-9)), 1)

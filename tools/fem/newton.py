@@ -159,7 +159,7 @@ def _solve_cg(
     count = 0
 
     def count_iteration(_: Array) -> None:
-        """Count one iteration."""
+        """Count one iteration of the conjugate-gradient solver in `count`; its argument is not used."""
         nonlocal count
         count += 1
 

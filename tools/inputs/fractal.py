@@ -15,8 +15,9 @@ def height_variance_density(spatial_frequency: Number, H: Number, G: Number) -> 
     Phi = G^(2(1-H)) frequency^(-2H)/2 with the Hurst exponent H and the roughness G [m].
 
     A wave of length l has the amplitude G^(1-H) sqrt(ln gamma) l^H (Hu 2023, Eqs. 1-3; Zhao 2018,
-    Eq. 5; Yu 2022, Eq. 4) and there is one in every ln(gamma). Phi/frequency is the one-sided power
-    spectral density of Zhao 2018, Eq. 30, without its 1/ln(gamma).
+    Eq. 5; Yu 2022, Eq. 4), with the frequency ratio gamma of neighbouring waves: there is one wave in
+    every ln(gamma). Phi/frequency is the one-sided power spectral density of Zhao 2018, Eq. 30, without its
+    1/ln(gamma).
     """
     return 0.5 * G ** (2.0 * (1.0 - H)) * spatial_frequency ** (-2.0 * H)
 
@@ -65,8 +66,8 @@ def areal_fractal_roughness(G: Number, H: Number) -> Number:
 def zhao_fractal_roughness(G: Number, H: Number, gamma: Number) -> Number:
     """Fractal roughness [m] as defined in Zhao 2018, Eqs. 1 and 30, from G [m] of this package.
 
-    The waves in Zhao 2018 do not have the factor sqrt(ln gamma); gamma is the frequency ratio of the waves,
-    H the Hurst exponent.
+    The waves in Zhao 2018 do not have the factor sqrt(ln gamma); gamma is the frequency ratio of neighbouring
+    waves, H the Hurst exponent.
     """
     return G * np.log(gamma) ** (0.5 / (1.0 - H))
 

@@ -190,7 +190,7 @@ class VibratingJoint:
 
     @property
     def parameters(self) -> dict[str, Any]:
-        """{parameter of the joint's FMU: value}.
+        """Values of the joint's parameters in the system: {parameter of the joint's FMU: value}.
 
         All parameters if the system has its own FMU of the joint, which several joints may share. Otherwise
         only those that the system gives, as the FMU in `--fmus` may have other parameters.

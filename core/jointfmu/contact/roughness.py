@@ -64,14 +64,16 @@ def predicted_stiffness(pressure: Number, h: Number) -> Number:
     return pressure / (PERSSON_GAMMA * h)
 
 
-def conflicting_heights(height_name: str) -> tuple[str, ...]:
-    """Names of the roughness heights that a file must not state together with the height `height_name`.
+def find_conflicting_height_names(roughness_height_name: str) -> tuple[str, ...]:
+    """Find the names of the roughness heights that a file must not state together with one of them.
 
     These are the other height of the same surface, and the combined height `h` of both surfaces.
+
+    roughness_height_name : Ra1, Rq1, Ra2 or Rq2 (mean or rms height of a surface), or h
     """
-    if height_name == "h":
+    if roughness_height_name == "h":
         return tuple(other for other in HEIGHT_FIELDS if other != "h")
-    return ({"a": "Rq", "q": "Ra"}[height_name[1]] + height_name[2], "h")
+    return ({"a": "Rq", "q": "Ra"}[roughness_height_name[1]] + roughness_height_name[2], "h")
 
 
 def check_heights(surface_heights: Mapping[str, Any], name_prefix: str = "") -> dict[str, Number]:
@@ -85,7 +87,7 @@ def check_heights(surface_heights: Mapping[str, Any], name_prefix: str = "") -> 
     declared = {name_prefix + name: item for name, item in HEIGHT_FIELDS.items()}
     texts = find_problems({name_prefix + name: value for name, value in surface_heights.items()}, declared)
     for name in (name for name in surface_heights if name in HEIGHT_FIELDS):
-        conflicts = [other for other in conflicting_heights(name) if other in surface_heights]
+        conflicts = [other for other in find_conflicting_height_names(name) if other in surface_heights]
         if conflicts:
             others = ", ".join(name_prefix + other for other in conflicts)
             texts.append(f"{name_prefix}{name} with {others}: state one height for each side, or only h")

@@ -179,8 +179,6 @@ def _create_temporary_file(output_path: str | Path, target_path: Path) -> Path:
     return Path(name)
 
 
-def _make_write_error(output_path: str | Path, system_error: OSError) -> ValueError:
-    """ValueError, one line, for an output path that could not be written, from the system's error."""
-    return ValueError(
-        f"{output_path}: cannot be written ({system_error.strerror}); expected a writable place"
-    )
+def _make_write_error(output_path: str | Path, os_error: OSError) -> ValueError:
+    """ValueError, one line, for an output path that could not be written, from the OSError."""
+    return ValueError(f"{output_path}: cannot be written ({os_error.strerror}); expected a writable place")

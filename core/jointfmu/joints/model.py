@@ -213,7 +213,7 @@ class Model:
         return bodies <= output_index < self.state_count + bodies
 
     def parameter_fields(self) -> dict[str, Any]:
-        """Declared fields {structured name: field} of the parameters that the FMU exposes."""
+        """Dataclass fields of the parameters that the FMU exposes: {structured parameter name: field}."""
         return {
             name: item
             for name, item in flatten_fields(self.parameter_class)

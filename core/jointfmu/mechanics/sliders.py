@@ -390,7 +390,9 @@ class Foundation:
         )
 
     def _foundation_tangent(self, tangent_xx: Array, tangent_xy: Array, tangent_yy: Array) -> Array:
-        """Tangent stiffness (..., 6) [Pa/m] of all sliders: xx, xy, yy, and xr, yr, rr with the rotation.
+        """Tangent stiffness (..., 6) [Pa/m], summed over the n sliders of a patch: xx, xy, yy, xr, yr, rr.
+
+        r is the displacement [m] of a slider by the rotation of the patch: angle times radius of its circle.
 
         tangent_xx, tangent_xy, tangent_yy : (..., n) tangent stiffness of each slider
         """

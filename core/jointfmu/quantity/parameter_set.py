@@ -204,7 +204,7 @@ def _select_section(
     }
     present = [section for section, section_names in names_by_section.items() if section_names]
     if len(present) > 1:
-        given = " with ".join(", ".join(names_by_section[section]) for section in present)
+        given = " together with ".join(", ".join(names_by_section[section]) for section in present)
         *others, last = (f"[{name_prefix}{section}]" for section in names_by_section)
         raise ValueError(f"{given}: state parameters of only one section, {', '.join(others)} or {last}")
     return present[0] if present else first

@@ -65,9 +65,9 @@ static bool tabulate_pair(Joint *joint, int steps, Text *reason)
         if (!(K[0] > MIN_DRIVE_STIFFNESS && K[0] < (1.0 - MIN_FLEXSPLINE_OVER_CONTACT_STIFFNESS) * constants[K_FTS0])) {
             stiffness_with_play(&constants[MAX_TORQUE], joint->constants, K);
             text_append_format(reason,
-                               "K_WTS = %g N.m/rad of the contact pair (K_TS) in series with K_FTS0 = %g N.m/rad is "
-                               "outside (%g, %g) N.m/rad, or K_TS is above %g K_FTS0; check K_FTS0 and the contact "
-                               "pair",
+                               "drive stiffness K_WTS = %g N.m/rad, of the contact pair in series with the "
+                               "flexspline K_FTS0 = %g N.m/rad, is outside (%g, %g) N.m/rad, or the contact pair "
+                               "is more than %g times as stiff as K_FTS0; check K_FTS0 and the surface",
                                K[0], constants[K_FTS0], MIN_DRIVE_STIFFNESS, constants[K_FTS0],
                                1.0 / MIN_FLEXSPLINE_OVER_CONTACT_STIFFNESS);
             return false;

@@ -37,7 +37,10 @@ def _add_joint_c_functions(c_function_set: CFunctionSet, fmu_model: Model) -> No
     if isinstance(drive, CatalogueDriveParameters):
         doc = "-> nodes of the midline: wind-up, torque, stiffness, its derivative before and after the node"
         c_function_set.add_function(
-            "midline_nodes", doc, [], [number for node in drive.make_midline_nodes() for number in node]
+            "midline_nodes",
+            doc,
+            [],
+            [number for node in drive.make_midline_spline_nodes() for number in node],
         )
     elif isinstance(drive, ContactPairDriveParameters):
         (torque,) = make_casadi_symbols("x", 1)

@@ -270,7 +270,9 @@ def test_loss_factors_and_damping(plastic, preload, moment):
     law = evaluate_at_pressure(JOINT, preload_pressure(JOINT, spring.points, preload, moment))
     plastic, elastic = (spring.points.area_share @ law[name] for name in ("W_NP", "W_NE"))
     assert out["eta_n"] == pytest.approx(plastic / elastic, rel=MAX_INTERPOLATION_ERROR)
-    ratio = 12.0 * mindlin.dissipation_function(0.1) / (5.0 * np.pi * mindlin.storage_function(0.1))
+    ratio = (
+        12.0 * mindlin.dissipated_energy_function(0.1) / (5.0 * np.pi * mindlin.stored_energy_function(0.1))
+    )
     assert out["eta_t"] == pytest.approx(ratio / (1.0 - ratio), rel=1e-13)  # round-off
     assert out["eta_t"] == pytest.approx(2.0 * 0.1 / (9.0 * np.pi), rel=0.1)  # its limit for small x
     for axis, eta in (("xx", "eta_t"), ("yy", "eta_t"), ("zz", "eta_n")):

@@ -270,7 +270,12 @@ def test_printed_numbers_from_those_of_the_other_drives():
     """
     found = list(leave_one_out())
     assert len(found) == 20
-    assert sum(not f.interval_low <= printed <= f.interval_high for *_, printed, f in found) <= 2
+    assert (
+        sum(
+            not f.prediction_interval_low <= printed <= f.prediction_interval_high for *_, printed, f in found
+        )
+        <= 2
+    )
     miss = {name: np.log(f.central_value / p) for name, what, p, f in found if what == "starting torque"}
     assert len(miss) == 6
     assert max(map(abs, miss.values())) < np.log(1.25)
@@ -289,7 +294,7 @@ def test_the_law_is_the_stated_one():
     law = scale_friction(40.0, 50.0, tuple(drives))
     assert law.starting_torque.central_value == pytest.approx(2.0 * 2e-6 * 40.0**2.5, rel=1e-9)
     assert law.viscous_torque.central_value == pytest.approx(1.5e-5 * 40.0**3 - 2e-6 * 40.0**2.5, rel=1e-9)
-    assert (law.starting_torque.interval_low, law.viscous_torque.interval_high) == (
+    assert (law.starting_torque.prediction_interval_low, law.viscous_torque.prediction_interval_high) == (
         pytest.approx(law.starting_torque.central_value, rel=1e-9),
         pytest.approx(law.viscous_torque.central_value, rel=1e-9),
     )

@@ -24,10 +24,7 @@ MODEL = Model(
     parameter_class=LinearSpring,
     tabulate=lambda parameters: parameters,
     inputs=(Variable("s_rel", "m", "elongation", 1e-3),),
-    outputs=(
-        Variable("f", "N", "force on side 2, restoring", 10.0),
-        Variable("K", "N/m", "stiffness -df/ds_rel", 1e4),
-    ),
+    outputs=(Variable("f", "N", "force on side 2", 10.0), Variable("K", "N/m", "stiffness", 1e4)),
     evaluate=LinearSpring.motion,
     validity_limits=(),
     ramp=LoadRamp("s_rel", 1e-3, 1e-5),

@@ -100,11 +100,14 @@ def add_command(command_parsers: SubParsers) -> None:
         export,
         "--first",
         int,
-        "springs: first number that your model leaves free for elements and nodes (default: 1)",
+        "for springs: first number that your model leaves free for elements and nodes (default: 1)",
     )
-    text = "ansys: first number that your model leaves free for element types and real constants (default: 1)"
+    text = (
+        "for ansys: first number that your model leaves free for element types and real constants "
+        "(default: 1)"
+    )
     declare_argument(export, "--first-set", int, text)
-    text = "springs: axis of your model that is normal to the contact (default: z)"
+    text = "for springs: axis of your model that is normal to the contact (default: z)"
     export.add_argument("--normal", choices=list(AXIS_ORDER), help=text)
     text = f"units of the written file: length-force-stress-mass (default: {SI_UNIT_SET.unit_set_name})"
     export.add_argument("--units", choices=list(UNIT_SETS), default=SI_UNIT_SET.unit_set_name, help=text)

@@ -32,8 +32,8 @@ def add_command(command_parsers: SubParsers) -> None:
     text = "folder to write for the FMI cross-check, if all experiments pass"
     declare_output(sub, "--listing", OUTPUT_FOLDER, text)
     text = (
-        "compare with start values and results computed from this parameter file (TOML), in place of those "
-        "in "
+        "check the FMU against start values and results computed from this parameter file (TOML), not "
+        "against those in "
     )
     declare_argument(sub, "--against", Path, text + "the FMU")
 

@@ -23,7 +23,7 @@ from . import save_panels
 def add_command(command_parsers: SubParsers) -> None:
     """Declare the command `jointfmu ring` with its options."""
     text = "simulate a joint with a body on it; find resonance and damping over load or amplitude"
-    ring = declare_command(command_parsers, "ring", _run_ring, text)
+    ring = declare_command(command_parsers, "ring", _run_resonance_simulation, text)
     declare_argument(
         ring,
         "system",
@@ -35,11 +35,11 @@ def add_command(command_parsers: SubParsers) -> None:
     text = "folder with the FMUs, written by `jointfmu system` or `jointfmu build --systems`"
     declare_argument(ring, "--fmus", Path, text, "DIR", default=Path("dist/fmi2"))
     text = (
-        "loads of the joint: preload of each bolt [N], or torque at the output [N.m] (default: a series of "
-        "loads)"
+        "loads of the joint, each simulated separately: preload (the same in each bolt) [N], or torque at "
+        "the output [N.m] (default: a series of loads)"
     )
     declare_argument(ring, "--load", float, text, nargs="+")
-    text = "mass [kg] or moment of inertia [kg.m2] of the body on the joint (default: that of the system)"
+    text = "mass [kg], or for a rotating body moment of inertia [kg.m2] (default: the value in SYSTEM)"
     declare_argument(ring, "--inertia", float, text)
     text = (
         "simulate a free decay from this deflection [m or rad], in the direction in which the joint slips, "
@@ -51,8 +51,8 @@ def add_command(command_parsers: SubParsers) -> None:
     declare_output(ring, "--plot", PICTURE_FILE, "draw resonance and decay (.png, .svg)")
 
 
-def _run_ring(args: argparse.Namespace) -> CommandResult:
-    """Run `jointfmu ring`: resonance of a joint with a body, by simulation with FMUs."""
+def _run_resonance_simulation(args: argparse.Namespace) -> CommandResult:
+    """Run `jointfmu ring`: resonance or free decay of a joint with a body, by simulation with FMUs."""
     with require_package("run a system"):
         from ...systems import ringing
     example = ringing.find_vibrating_joint(load_system(args.system), args.joint)

@@ -25,7 +25,7 @@ _MIN_CURVE_SAMPLES = 10_000
 """Smallest number of sample points of a whole curve, for curves with few segments."""
 _MIN_STIFFNESS_CURVE_SAMPLES = 4 * _MIN_CURVE_SAMPLES
 """Smallest number of sample points if the stiffness error is limited too: some curves have short corners."""
-_MIN_SAMPLES_PER_TABLE_LINE = 12
+_MIN_SAMPLES_BETWEEN_TABLE_ROWS = 12
 """Smallest number of sample points on a straight line of a table [1].
 
 The peak of a parabolic error is then found within 1 %."""
@@ -181,10 +181,10 @@ def decimate_curve(
     stops = {*required_point_indices, displacement.size - 1}
     index = decimate_table(stops, lambda i, j: line_error_over_allowed_error(i, j) <= 1.0)
     between = np.diff(index)[~np.isin(index[1:], list(stops))]
-    if np.any(between < _MIN_SAMPLES_PER_TABLE_LINE):
+    if np.any(between < _MIN_SAMPLES_BETWEEN_TABLE_ROWS):
         raise ValueError(
-            f"error = {max_load_error:g} is too small: the table would have {index.size} rows or more; state "
-            "a larger error"
+            f"table error = {max_load_error:g} is too small for a table: it would need {index.size} rows or "
+            "more; state a larger error"
         )
     rows = np.stack([displacement[index], curve_loads[index], stiffness[index]], axis=1)
     return LoadTable(

@@ -108,9 +108,9 @@ def _connector_heights(fmu_variables: Sequence[Variable]) -> list[int]:
 def _flange_template_variables(
     terminal: Terminal, port_positions: Mapping[str, tuple[float, float]]
 ) -> dict[str, object]:
-    """Template variables of a flange with its adaptor.
+    """Variables of the wrapper's Modelica template: one flange, and its adaptor to the signals of the FMU.
 
-    Potential, rate and force of the terminal are connected to p, pder and f of the adaptor.
+    Motion, its rate and force of the FMU's terminal are connected to p, pder and f of the adaptor.
     """
     rotational = ".Rotational." in terminal.connector_class
     potential, rate, force = (

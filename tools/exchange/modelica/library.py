@@ -238,7 +238,7 @@ def _render_records(library_joints: Sequence[_LibraryJoint]) -> dict[str, str]:
 def _render_examples(
     library_joints: Sequence[_LibraryJoint], shared_templates: Environment
 ) -> dict[str, str]:
-    """Render the shipped systems: {class: text}."""
+    """Render the systems shipped with jointfmu as Modelica example models: {class name: Modelica text}."""
     by_kind = {joint.joint_kind.name: joint for joint in library_joints}
     classes = {}
     for system in load_systems().values():

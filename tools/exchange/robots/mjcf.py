@@ -124,7 +124,7 @@ damping="{drive.viscous_friction:.9g}"/>
 def simulate_drive_torque(drive: Transmission, fitted_spring: FittedSpring, wind_up: Array) -> Array:
     """Simulate the torques (n) [N.m] of the drive in MuJoCo along prescribed wind-ups (n) [rad] from rest.
 
-    Raises ImportError without mujoco, ValueError if MuJoCo has no yielding springs.
+    Raises ImportError without mujoco, ValueError if MuJoCo has no attribute `springyield` of tendons.
     """
     import mujoco
 
@@ -157,7 +157,7 @@ def compare_with_fmu(drive: Transmission, fitted_spring: FittedSpring) -> FitErr
 
 
 def check_mujoco_version() -> None:
-    """Raise ValueError if MuJoCo has no yielding springs, ImportError if it is missing."""
+    """Raise ValueError if MuJoCo has no attribute `springyield` of tendons, ImportError if it is missing."""
     import mujoco
 
     if not hasattr(mujoco.MjModel, "tendon_springyield"):

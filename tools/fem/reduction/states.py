@@ -260,7 +260,10 @@ class CellwiseJoint:
         return force
 
     def generate_attachment_motions(self) -> Iterator[Array]:
-        """Generate motions (6) [m, rad] of side 2 into slip and opening: along each axis, then along all."""
+        """Generate motions of side 2 up to slip and opening: along each axis, then along all at once.
+
+        Each motion is a vector (6): translations along and rotations about x, y, z [m, rad].
+        """
         joint, K = self.reduced_joint.joint, np.diag(self.compute_stiffness())
         radius = np.sqrt(
             self.reduced_joint.points.area_share @ np.sum(self.reduced_joint.points.position**2, axis=1)

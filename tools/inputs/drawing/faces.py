@@ -42,12 +42,19 @@ FACE_OPTIONS = (
         "NAME",
         is_list=True,
     ),
-    Option("Ra", "roughness Ra of both sides, or of each side [um]", "RA", is_list=True),
-    Option("Rq", "rms roughness Rq or Sq of both sides, or of each side [um]", "RQ", is_list=True),
+    Option(
+        "Ra", "roughness Ra: one value that both sides have, or one for each side [um]", "RA", is_list=True
+    ),
+    Option(
+        "Rq",
+        "rms roughness Rq or Sq: one value that both sides have, or one for each side [um]",
+        "RQ",
+        is_list=True,
+    ),
     Option(
         "Rz",
-        "roughness Rz of both sides, or of each side [um]; Ra is taken as Rz/6.25, with the range Rz/10 to "
-        "Rz/4",
+        "roughness Rz: one value that both sides have, or one for each side [um]; Ra is taken as Rz/6.25, "
+        "with the range Rz/10 to Rz/4",
         "RZ",
         is_list=True,
     ),

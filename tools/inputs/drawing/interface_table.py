@@ -65,7 +65,7 @@ def add_interface_table(
             parameter_sheet.set_parameter_range("table.ratio", float(np.min(ratio)), float(np.max(ratio)))
     else:
         text = (
-            "not measured; 4 G'/E* of elastic contact spots (Mindlin 1949), measured joints have 0.3 to 0.9"
+            "not measured; 4 G'/E* of elastic contact spots (Mindlin 1949), measured joints have 0.2 to 0.5"
         )
         parameter_sheet.add_parameter("table.ratio", default_shear_stiffness_ratio, "estimate", text)
     parameter_sheet.add_parameter("table.factor", 1.0, "default", "default choice: the points as they are")

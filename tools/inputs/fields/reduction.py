@@ -195,9 +195,9 @@ def reduce_field(
 
 def _search_reduced_points(
     sum_functions: ForceAndStiffnessFunctions,
-    rounded_distribution: PressureDistribution,
-    sample_distribution: PressureDistribution,
-    unrounded_distribution: PressureDistribution,
+    rounded_pressure_distribution: PressureDistribution,
+    sampled_pressure_distribution: PressureDistribution,
+    unrounded_pressure_distribution: PressureDistribution,
 ) -> FieldReduction | None:
     """Search few nodes (points) that replace all nodes of a pressure field; None if there are none.
 
@@ -205,22 +205,25 @@ def _search_reduced_points(
     LARGE_FIELD_REDUCTION_TOLERANCE. Each round selects points by some load cases, and tests them in new ones.
     Load cases in which the points miss the tolerance are added to those of the selection.
 
-    rounded_distribution   : normalised pressure at all nodes, rounded
-    sample_distribution    : sample of these nodes, for finding the independent sums
-    unrounded_distribution : normalised pressure at all nodes
+    rounded_pressure_distribution   : normalised pressure at all nodes, rounded
+    sampled_pressure_distribution   : sample of these nodes, for finding the independent sums
+    unrounded_pressure_distribution : normalised pressure at all nodes
     """
-    limit = find_max_moment_over_unloading_moment(sum_functions.bolted_joint, rounded_distribution)
+    limit = find_max_moment_over_unloading_moment(sum_functions.bolted_joint, rounded_pressure_distribution)
     loads = random_load_cases(limit)
     tests = int(
-        np.clip(MAX_TEST_EVALUATIONS / rounded_distribution.area_share.size, *TEST_LOAD_CASE_COUNT_RANGE)
+        np.clip(
+            MAX_TEST_EVALUATIONS / rounded_pressure_distribution.area_share.size, *TEST_LOAD_CASE_COUNT_RANGE
+        )
     )
     system = _PreservedSums.from_load_case_sums(
         sum_functions,
-        rounded_distribution,
-        unrounded_distribution,
-        sample_distribution,
+        rounded_pressure_distribution,
+        unrounded_pressure_distribution,
+        sampled_pressure_distribution,
         sum_functions.compute_load_case_sums(
-            rounded_distribution, [*initial_load_cases(limit), *islice(loads, INITIAL_RANDOM_LOAD_CASES)]
+            rounded_pressure_distribution,
+            [*initial_load_cases(limit), *islice(loads, INITIAL_RANDOM_LOAD_CASES)],
         ),
     )
     best, best_deviation = None, LARGE_FIELD_REDUCTION_TOLERANCE
@@ -228,7 +231,9 @@ def _search_reduced_points(
         points = system.find_reduced_points()
         if points is None:
             break
-        test_sums = sum_functions.compute_load_case_sums(rounded_distribution, list(islice(loads, tests)))
+        test_sums = sum_functions.compute_load_case_sums(
+            rounded_pressure_distribution, list(islice(loads, tests))
+        )
         deviations = sum_functions.compute_sum_deviations(points, test_sums)
         worst = float(np.max(deviations))
         if worst <= best_deviation:
@@ -242,8 +247,12 @@ def _search_reduced_points(
         )
     if best is None:
         return None
-    deviation_beyond = _deviation_above_tested_moments(sum_functions, rounded_distribution, best, limit)
-    return FieldReduction(best, unrounded_distribution, best_deviation, tests, limit, deviation_beyond)
+    deviation_beyond = _deviation_above_tested_moments(
+        sum_functions, rounded_pressure_distribution, best, limit
+    )
+    return FieldReduction(
+        best, unrounded_pressure_distribution, best_deviation, tests, limit, deviation_beyond
+    )
 
 
 def _deviation_above_tested_moments(
@@ -285,19 +294,21 @@ class _PreservedSums:
     The sums are area, centroid, force and moments of the field, and force, stiffness and their moments in
     load cases.
 
-    rounded_distribution   : normalised pressure at all nodes, rounded
-    unrounded_distribution : normalised pressure at all nodes
-    sample_distribution    : normalised pressure at a sample of c nodes, for finding the independent sums
-    mixing_matrix          : random matrix (SKETCH_MATRIX_ROWS, c)
-    load_case_sums         : force, stiffness and their moments in the load cases
-    equilibrium_scale      : divisors of the functions of `evaluate_equilibrium_functions`
-    sketch_matrix          : (SKETCH_MATRIX_ROWS, r) random combinations of the functions at the sample nodes
+    rounded_pressure_distribution   : normalised pressure at all nodes, rounded
+    unrounded_pressure_distribution : normalised pressure at all nodes
+    sampled_pressure_distribution   : normalised pressure at a sample of c nodes, for finding the independent
+        sums
+    mixing_matrix                   : random matrix (SKETCH_MATRIX_ROWS, c)
+    load_case_sums                  : force, stiffness and their moments in the load cases
+    equilibrium_scale               : divisors of the functions of `evaluate_equilibrium_functions`
+    sketch_matrix                   : (SKETCH_MATRIX_ROWS, r) random combinations of the functions at the
+        sample nodes
     """
 
     sum_functions: ForceAndStiffnessFunctions
-    rounded_distribution: PressureDistribution
-    unrounded_distribution: PressureDistribution
-    sample_distribution: PressureDistribution
+    rounded_pressure_distribution: PressureDistribution
+    unrounded_pressure_distribution: PressureDistribution
+    sampled_pressure_distribution: PressureDistribution
     mixing_matrix: Array
     load_case_sums: ForceAndStiffnessSums
     equilibrium_scale: Array
@@ -307,31 +318,32 @@ class _PreservedSums:
     def from_load_case_sums(
         cls,
         sum_functions: ForceAndStiffnessFunctions,
-        rounded_distribution: PressureDistribution,
-        unrounded_distribution: PressureDistribution,
-        sample_distribution: PressureDistribution,
+        rounded_pressure_distribution: PressureDistribution,
+        unrounded_pressure_distribution: PressureDistribution,
+        sampled_pressure_distribution: PressureDistribution,
         load_case_sums: ForceAndStiffnessSums,
     ) -> "_PreservedSums":
         """Collect the sums that the selected nodes must reproduce, in the load cases at the start."""
         scale = np.maximum(
-            np.max(np.abs(evaluate_equilibrium_functions(rounded_distribution)), axis=0), np.finfo(float).tiny
+            np.max(np.abs(evaluate_equilibrium_functions(rounded_pressure_distribution)), axis=0),
+            np.finfo(float).tiny,
         )
         mixing = np.random.default_rng(LOAD_CASE_SEED).standard_normal(
-            (SKETCH_MATRIX_ROWS, sample_distribution.area_share.size)
+            (SKETCH_MATRIX_ROWS, sampled_pressure_distribution.area_share.size)
         )
-        mixing *= np.sqrt(sample_distribution.area_share / SKETCH_MATRIX_ROWS)
+        mixing *= np.sqrt(sampled_pressure_distribution.area_share / SKETCH_MATRIX_ROWS)
         sketch = mixing @ np.concatenate(
             [
-                evaluate_equilibrium_functions(sample_distribution) / scale,
-                sum_functions.evaluate_functions(sample_distribution, load_case_sums),
+                evaluate_equilibrium_functions(sampled_pressure_distribution) / scale,
+                sum_functions.evaluate_functions(sampled_pressure_distribution, load_case_sums),
             ],
             axis=1,
         )
         return cls(
             sum_functions,
-            rounded_distribution,
-            unrounded_distribution,
-            sample_distribution,
+            rounded_pressure_distribution,
+            unrounded_pressure_distribution,
+            sampled_pressure_distribution,
             mixing,
             load_case_sums,
             scale,
@@ -344,7 +356,7 @@ class _PreservedSums:
             [
                 self.sketch_matrix,
                 self.mixing_matrix
-                @ self.sum_functions.evaluate_functions(self.sample_distribution, load_case_sums),
+                @ self.sum_functions.evaluate_functions(self.sampled_pressure_distribution, load_case_sums),
             ],
             axis=1,
         )
@@ -366,7 +378,7 @@ class _PreservedSums:
         The nodes with the highest pressure (`find_peak_nodes`) always stay, with the share of their own area.
         """
         independent, turn = self._find_independent_sums()
-        fixed = find_peak_nodes(self.rounded_distribution)
+        fixed = find_peak_nodes(self.rounded_pressure_distribution)
         try:
             candidates, share = self._select_node_groups(independent, turn, fixed)
             selected, share = recombine_weights(
@@ -375,17 +387,17 @@ class _PreservedSums:
         except RuntimeError:  # round-off
             return None
         selected = candidates[selected]
-        values = self.evaluate_functions(self.rounded_distribution.select_nodes(selected))
+        values = self.evaluate_functions(self.rounded_pressure_distribution.select_nodes(selected))
         target = np.concatenate(
             [
-                self.rounded_distribution.area_share
-                @ evaluate_equilibrium_functions(self.rounded_distribution)
+                self.rounded_pressure_distribution.area_share
+                @ evaluate_equilibrium_functions(self.rounded_pressure_distribution)
                 / self.equilibrium_scale,
                 self.load_case_sums.total_sums.ravel(),
             ]
         )
-        target -= self.rounded_distribution.area_share[fixed] @ self.evaluate_functions(
-            self.rounded_distribution.select_nodes(fixed)
+        target -= self.rounded_pressure_distribution.area_share[fixed] @ self.evaluate_functions(
+            self.rounded_pressure_distribution.select_nodes(fixed)
         )
         best, count = None, independent.size
         tolerance = ACCEPTED_DEVIATION_OVER_TOLERANCE * LARGE_FIELD_REDUCTION_TOLERANCE
@@ -399,9 +411,9 @@ class _PreservedSums:
             selected, values = selected[fewer], values[fewer]
         if best is None:
             return None
-        points = self.unrounded_distribution.select_nodes(np.concatenate([fixed, best[0]]))
+        points = self.unrounded_pressure_distribution.select_nodes(np.concatenate([fixed, best[0]]))
         return _restore_equilibrium(
-            points, np.concatenate([self.rounded_distribution.area_share[fixed], best[1]])
+            points, np.concatenate([self.rounded_pressure_distribution.area_share[fixed], best[1]])
         )
 
     def _select_node_groups(
@@ -411,7 +423,7 @@ class _PreservedSums:
 
         Returns the nodes of these groups and their area shares.
         """
-        share = self.rounded_distribution.area_share.copy()
+        share = self.rounded_pressure_distribution.area_share.copy()
         share[fixed_nodes] = 0.0
         group = np.arange(share.size) // nodes_per_group(share.size)
         old_share = np.asarray(np.bincount(group, share), dtype=np.float64)
@@ -420,7 +432,7 @@ class _PreservedSums:
         np.subtract.at(
             sums,
             group[fixed_nodes],
-            self.rounded_distribution.area_share[fixed_nodes, None]
+            self.rounded_pressure_distribution.area_share[fixed_nodes, None]
             * self._evaluate_selected_functions(fixed_nodes, function_indices),
         )
         selected, new_share = recombine_weights(
@@ -434,12 +446,12 @@ class _PreservedSums:
 
     def _sum_over_groups(self, function_indices: NodeIndices) -> Array:
         """Sums (g, k) of k functions of pressure and position over the nodes of each of g groups."""
-        share, count = self.rounded_distribution.area_share[:, None], self.equilibrium_scale.size
+        share, count = self.rounded_pressure_distribution.area_share[:, None], self.equilibrium_scale.size
         is_balance = function_indices < count
         load, function = np.divmod(function_indices[~is_balance] - count, 9)
-        values = (evaluate_equilibrium_functions(self.rounded_distribution) / self.equilibrium_scale)[
-            :, function_indices[is_balance]
-        ]
+        values = (
+            evaluate_equilibrium_functions(self.rounded_pressure_distribution) / self.equilibrium_scale
+        )[:, function_indices[is_balance]]
         out = np.empty((self.load_case_sums.group_sums.shape[2], function_indices.size))
         out[:, is_balance] = np.add.reduceat(
             share * values, np.arange(0, share.size, nodes_per_group(share.size))
@@ -449,7 +461,10 @@ class _PreservedSums:
 
     def _evaluate_selected_functions(self, node_indices: NodeIndices, function_indices: NodeIndices) -> Array:
         """Values (n, k) at n nodes of k of the functions whose sums over the nodes must be kept."""
-        shape, count = self.rounded_distribution.select_nodes(node_indices), self.equilibrium_scale.size
+        shape, count = (
+            self.rounded_pressure_distribution.select_nodes(node_indices),
+            self.equilibrium_scale.size,
+        )
         is_balance = function_indices < count
         out = np.empty((node_indices.size, function_indices.size))
         out[:, is_balance] = (evaluate_equilibrium_functions(shape) / self.equilibrium_scale)[

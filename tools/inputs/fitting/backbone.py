@@ -153,7 +153,7 @@ def _separate_hysteresis(
         [hats, gap[:, np.flatnonzero(open_gap)], scipy.sparse.csr_matrix(time[:, None])]
     )
     design = design.tocsr()
-    has_drift = _is_drift_determined(design)
+    has_drift = _is_drift_identifiable(design)
     if not has_drift:
         design = design[:, :-1]
     normal = np.linalg.pinv((design.T @ design).toarray(), hermitian=True)
@@ -223,8 +223,8 @@ def _has_turning_point(
     )
 
 
-def _is_drift_determined(design_matrix: scipy.sparse.csr_matrix) -> bool:
-    """Whether the last column (drift) of a design matrix is linearly independent of the other columns."""
+def _is_drift_identifiable(design_matrix: scipy.sparse.csr_matrix) -> bool:
+    """Whether the drift of the angle can be fitted: the last column does not depend on the other columns."""
     columns, last = design_matrix[:, :-1], design_matrix[:, -1].toarray()[:, 0]
     normal = np.linalg.pinv((columns.T @ columns).toarray(), hermitian=True)
     independent = last - columns @ (normal @ (columns.T @ last))

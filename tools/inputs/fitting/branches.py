@@ -59,23 +59,22 @@ _MAX_REST_POSITION_ITERATIONS, _REST_DIFFERENCE_STEP_OVER_MOTION_RANGE = 6, 1e-4
 class MeasuredLoops:
     """Measured hysteresis loops: samples of their branches, branch after branch.
 
-    joint_motion                  : (n) displacement or angle of the samples
-    joint_force                   : (n) force or torque of the samples
-    branch_of_sample              : (n) index of the branch of each sample
-    branch_start_motion           : (branches) motion at the turning point at which the branch begins
-    branch_start_motion_deviation : (branches) standard deviation of `branch_start_motion`
-    branch_start_force            : (branches) approximate force at the turning point
-    run_of_sample                 : (n) index of the run of each sample
-    widest_loops                  : for each run with a closed loop: area [J] and range of motion of its
-                                    widest loop
-    slip_steps                    : force steps between branches that slip, see `find_slip_steps`
+    joint_motion          : (n) displacement or angle of the samples
+    joint_force           : (n) force or torque of the samples
+    branch_of_sample      : (n) index of the branch of each sample
+    branch_start_motion   : (branches) motion at the turning point at which the branch begins
+    branch_start_motion_standard_deviation : (branches) standard deviation of `branch_start_motion`
+    branch_start_force    : (branches) approximate force at the turning point
+    run_of_sample         : (n) index of the run of each sample
+    widest_loops          : for each run with a closed loop: area [J] and range of motion of its widest loop
+    slip_steps            : force steps between branches that slip, see `find_slip_steps`
     """
 
     joint_motion: Array
     joint_force: Array
     branch_of_sample: NDArray[np.int64]
     branch_start_motion: Array
-    branch_start_motion_deviation: Array
+    branch_start_motion_standard_deviation: Array
     branch_start_force: Array
     run_of_sample: NDArray[np.int64]
     widest_loops: Sequence[tuple[float, float]]
@@ -115,7 +114,10 @@ class MeasuredLoops:
         return bool(self._initial_slopes(is_stiffness_resolved=True))
 
     def _initial_slopes(self, is_stiffness_resolved: bool) -> list[float]:
-        """Initial slopes of the branches with a resolved stiffness; or lower bounds for the other branches.
+        """Stiffness [N/m or N.m/rad] right after the turning point, for each branch of a group.
+
+        is_stiffness_resolved : True: branches with enough samples before slip; False: all other branches,
+            with lower bounds of their stiffness
 
         Only the rising part of a branch is used: a slipped part would lower the slope.
         """
@@ -129,7 +131,9 @@ class MeasuredLoops:
                 slopes.append(float(np.polyfit(distance[:rising], change[:rising], 2)[1]))
             else:
                 slopes.append(
-                    float(change[rising] / (distance[rising] + self.branch_start_motion_deviation[k]))
+                    float(
+                        change[rising] / (distance[rising] + self.branch_start_motion_standard_deviation[k])
+                    )
                 )
         return slopes
 
@@ -182,8 +186,8 @@ class MeasuredLoops:
                     first_flat_end_samples=before,
                     second_flat_end_samples=after,
                     force_step=float(np.mean(self.joint_force[after]) - np.mean(self.joint_force[before])),
-                    force_step_deviation=float(deviation),
-                    min_relative_deviation=float(np.hypot(*sizes[number - 1 : number + 1] ** -0.5)),
+                    force_step_standard_deviation=float(deviation),
+                    min_relative_standard_deviation=float(np.hypot(*sizes[number - 1 : number + 1] ** -0.5)),
                 )
             )
         return steps
@@ -231,19 +235,21 @@ class MeasuredLoops:
         """Fit the turning points to the samples: force and motion (branches) there, and residual force (n).
 
         Linear least squares for each branch. `residual_scale` (n) are the standard deviations of the force;
-        the motion at the turning point has the standard deviation `branch_start_motion_deviation`.
+        the motion at the turning point has the standard deviation `branch_start_motion_standard_deviation`.
         """
         residual, derivative = (
             self._force_residuals(hysteresis_law, 0.0),
             self._force_residuals(hysteresis_law, 1.0),
         )
-        derivative = (derivative - residual) / self.branch_start_motion_deviation[self.branch_of_sample]
+        derivative = (derivative - residual) / self.branch_start_motion_standard_deviation[
+            self.branch_of_sample
+        ]
         force, mean_derivative = self._branch_means(residual), self._branch_means(derivative)
         residual = residual - force[self.branch_of_sample]
         derivative = derivative - mean_derivative[self.branch_of_sample]
         weight = residual_scale**-2.0
         shift = -self._branch_sums(weight * residual * derivative) / (
-            self._branch_sums(weight * derivative**2) + self.branch_start_motion_deviation**-2.0
+            self._branch_sums(weight * derivative**2) + self.branch_start_motion_standard_deviation**-2.0
         )
         return (
             force + mean_derivative * shift,
@@ -263,12 +269,12 @@ class MeasuredLoops:
         without_friction = self._force_residuals(replace(hysteresis_law, elastic_spring=None), 0.0)
         size = float(np.ptp(self.joint_motion))
 
-        def misfit(rest_motion: float) -> Array:
-            """Force residuals (n) over their standard deviations [1] at the rest position `rest_motion`."""
+        def misfit(trial_rest_position: float) -> Array:
+            """Force residuals (n) over their standard deviations [1] for a trial rest position of the law."""
             residual = (
                 without_friction
-                - force(self.joint_motion - rest_motion)
-                + force(self.branch_start_motion - rest_motion)[self.branch_of_sample]
+                - force(self.joint_motion - trial_rest_position)
+                + force(self.branch_start_motion - trial_rest_position)[self.branch_of_sample]
             )
             return np.asarray(
                 (residual - self._branch_means(residual)[self.branch_of_sample]) / residual_scale
@@ -301,7 +307,7 @@ class MeasuredLoops:
         return np.concatenate(
             [
                 residual / residual_scale,
-                (start - self.branch_start_motion) / self.branch_start_motion_deviation,
+                (start - self.branch_start_motion) / self.branch_start_motion_standard_deviation,
                 steps,
             ]
         )
@@ -333,7 +339,9 @@ class MeasuredLoops:
             - mean_force_change(slip_step.first_flat_end_samples, before)
         )
         scale = float(residual_scale[slip_step.second_flat_end_samples[0]])
-        deviation = max(slip_step.force_step_deviation, scale * slip_step.min_relative_deviation)
+        deviation = max(
+            slip_step.force_step_standard_deviation, scale * slip_step.min_relative_standard_deviation
+        )
         return (slip_step.force_step - law_step) / deviation
 
     def _force_residuals(self, hysteresis_law: HysteresisLaw, turning_point_shift: float) -> Array:
@@ -343,7 +351,7 @@ class MeasuredLoops:
         """
         return self.joint_force - hysteresis_law.force_change(
             self.joint_motion,
-            (self.branch_start_motion + turning_point_shift * self.branch_start_motion_deviation)[
+            (self.branch_start_motion + turning_point_shift * self.branch_start_motion_standard_deviation)[
                 self.branch_of_sample
             ],
         )
@@ -364,17 +372,18 @@ class SlipStep:
     branch_number : index of the second branch
     first_flat_end_samples, second_flat_end_samples : indices of the samples on both flat ends
     force_step : difference of the mean forces, second minus first
-    force_step_deviation : standard deviation of `force_step` by the scatter of the samples
-    min_relative_deviation : lower limit of the standard deviation of the step, over the residual scale of a
-        sample [1]: if the law misses the data systematically, the step counts as all samples of both branches
+    force_step_standard_deviation : standard deviation of `force_step` by the scatter of the samples
+    min_relative_standard_deviation : lower limit of the standard deviation of the step, over the residual
+        scale of a sample [1]: if the law misses the data systematically, the step counts as all samples of
+        both branches
     """
 
     branch_number: int
     first_flat_end_samples: NDArray[np.int64]
     second_flat_end_samples: NDArray[np.int64]
     force_step: float
-    force_step_deviation: float
-    min_relative_deviation: float
+    force_step_standard_deviation: float
+    min_relative_standard_deviation: float
 
 
 def cut_branches(measured_runs: Sequence[tuple[str, Array, Array]]) -> MeasuredLoops:
@@ -409,7 +418,7 @@ def cut_branches(measured_runs: Sequence[tuple[str, Array, Array]]) -> MeasuredL
         joint_force=np.concatenate([branch[1] for branch in branches]),
         branch_of_sample=np.repeat(np.arange(len(branches)), sizes),
         branch_start_motion=np.array([branch[2] for branch in branches]),
-        branch_start_motion_deviation=np.array([branch[3] for branch in branches]),
+        branch_start_motion_standard_deviation=np.array([branch[3] for branch in branches]),
         branch_start_force=np.array([branch[4] for branch in branches]),
         run_of_sample=np.repeat([branch[5] for branch in branches], sizes),
         widest_loops=areas,

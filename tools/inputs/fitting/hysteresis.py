@@ -76,12 +76,12 @@ class HysteresisLaw:
             - self.elastic_spring.elastic_force(turning_point_motion)
         )
 
-    def with_rest_position(self, rest_motion: float) -> "HysteresisLaw":
-        """Copy of the law whose elastic force is zero at the motion `rest_motion`, instead of at zero."""
+    def with_rest_position(self, rest_position: float) -> "HysteresisLaw":
+        """Copy of the law whose elastic force is zero at the motion `rest_position`, instead of at zero."""
         if self.elastic_spring is None:
             return self
         force, energy = self.elastic_spring.elastic_force, self.elastic_spring.elastic_energy
-        moved = NonlinearSpring(lambda u: force(u - rest_motion), lambda u: energy(u - rest_motion))
+        moved = NonlinearSpring(lambda u: force(u - rest_position), lambda u: energy(u - rest_position))
         return replace(self, elastic_spring=moved)
 
     def equivalent_spring(self, motion_amplitude: Array) -> tuple[Array, Array]:

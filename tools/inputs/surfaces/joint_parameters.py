@@ -185,5 +185,5 @@ def _describe_source(
         )
     return (
         f"{_describe_fit(identified_surface, fractal_result)}; {extent}; 95 % interval "
-        f"{estimate.interval_low:.4g} to {estimate.interval_high:.4g}"
+        f"{estimate.confidence_interval_low:.4g} to {estimate.confidence_interval_high:.4g}"
     )

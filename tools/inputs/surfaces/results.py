@@ -30,8 +30,8 @@ class Estimate:
     """Estimated value of a surface parameter, with the limits of its confidence interval."""
 
     estimated_value: float
-    interval_low: float
-    interval_high: float
+    confidence_interval_low: float
+    confidence_interval_high: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -209,12 +209,13 @@ class SurfaceIdentification:
                 return f"D = {D:.2f} ({result.series_method}) lies at the end of 1 to 2"
             if not result.fitted_law.is_self_affine:
                 return f"not self-affine ({result.series_method})"
-        if max(r.profile_fractal.D.interval_low for r in results) > min(
-            r.profile_fractal.D.interval_high for r in results
+        if max(r.profile_fractal.D.confidence_interval_low for r in results) > min(
+            r.profile_fractal.D.confidence_interval_high for r in results
         ):
             values = ", ".join(
-                f"{r.profile_fractal.D.estimated_value:.2f} [{r.profile_fractal.D.interval_low:.2f}, "
-                f"{r.profile_fractal.D.interval_high:.2f}] ({r.series_method})"
+                f"{r.profile_fractal.D.estimated_value:.2f} "
+                f"[{r.profile_fractal.D.confidence_interval_low:.2f}, "
+                f"{r.profile_fractal.D.confidence_interval_high:.2f}] ({r.series_method})"
                 for r in results
             )
             return f"the methods disagree, D = {values}"
@@ -282,7 +283,10 @@ def list_identification_warnings(fractal_results: Sequence[FractalResult], is_te
             f"{G.interval_decades:.1f} decades; measure a larger patch, or more decades"
         )
     structures, spectra = fractal_results[0].profile_fractal.D, fractal_results[1].profile_fractal.D
-    if structures.interval_low > spectra.interval_high or spectra.interval_low > structures.interval_high:
+    if (
+        structures.confidence_interval_low > spectra.confidence_interval_high
+        or spectra.confidence_interval_low > structures.confidence_interval_high
+    ):
         lines.append(
             f"the methods disagree: D = {structures.estimated_value:.3f} "
             f"({fractal_results[0].series_method}) and {spectra.estimated_value:.3f} "
@@ -329,14 +333,14 @@ def _draw_fractal_result(axes: "Axes", fractal_result: FractalResult) -> None:
     D, low, high = (
         (
             fractal_result.areal_fractal.D_s.estimated_value,
-            fractal_result.areal_fractal.D_s.interval_low,
-            fractal_result.areal_fractal.D_s.interval_high,
+            fractal_result.areal_fractal.D_s.confidence_interval_low,
+            fractal_result.areal_fractal.D_s.confidence_interval_high,
         )
         if fractal_result.scan_direction == "areal"
         else (
             fractal_result.profile_fractal.D.estimated_value,
-            fractal_result.profile_fractal.D.interval_low,
-            fractal_result.profile_fractal.D.interval_high,
+            fractal_result.profile_fractal.D.confidence_interval_low,
+            fractal_result.profile_fractal.D.confidence_interval_high,
         )
     )
     name = "D_s" if fractal_result.scan_direction == "areal" else "D"

@@ -74,7 +74,10 @@ class MaterialPair:
 def interface_points_from_tail(
     bearing_curve: BearingCurve, material_pair: MaterialPair, scan_names: str
 ) -> InterfacePoints:
-    """Points of the interface law `table` from the upper tail of the heights: pressure over decay length."""
+    """Points of the interface law `table` from the upper tail of the heights: stiffness k = p/l.
+
+    p: pressure; l: decay length of the tail, with which the pressure grows as exp(approach/l).
+    """
     pressure, stiffness = bearing_curve.stiffness_table(material_pair.contact_modulus)
     source = (
         f"upper tail of the heights of {scan_names}: pressure over decay length, E* = "

@@ -71,8 +71,8 @@ def evaluate_mindlin(joint_parameters: BoltedJointParameters, function: str, x: 
                energy of a cycle over 2 pi times the stored energy)
     """
     table = {
-        "loop": mindlin.dissipation_function,
-        "storage": mindlin.storage_function,
+        "loop": mindlin.dissipated_energy_function,
+        "storage": mindlin.stored_energy_function,
         "loss_ratio": mindlin.loss_ratio,
     }
     return float(table[function](x))

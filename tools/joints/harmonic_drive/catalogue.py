@@ -249,23 +249,25 @@ def _hysteresis_limits(drive_series: str, drive_size: str, speed_ratio: float) -
 
 
 def _make_catalogue_entry_with_friction(
-    friction_row: Mapping[str, str], similar_drive: CatalogueEntry
+    friction_row: Mapping[str, str], same_stiffness_entry: CatalogueEntry
 ) -> CatalogueEntry:
     """Make the catalogue entry of a drive with published friction.
 
-    similar_drive : drive of the same size, ratio and stiffness, which may be the drive itself; it supplies
-                    the values that are not published
+    same_stiffness_entry : drive of the same size, ratio and stiffness, which may be the drive itself; it
+                           supplies the values that are not published
     """
-    name, numbers = friction_row["drive"], dict(similar_drive.known_numbers)
-    if name != similar_drive.joint_name:
-        text = f"that of {similar_drive.joint_name}, of the same size, ratio and stiffness; "
+    name, numbers = friction_row["drive"], dict(same_stiffness_entry.known_numbers)
+    if name != same_stiffness_entry.joint_name:
+        text = f"that of {same_stiffness_entry.joint_name}, of the same size, ratio and stiffness; "
         numbers = {
             c: SourcedNumber(n.si_value, "estimate", text + n.value_source, n.is_upper_limit)
             for c, n in numbers.items()
         }
     source = f"{name}: {friction_row['source']}"
     for column, (head, unit) in _FRICTION_TABLE_HEADINGS.items():
-        if friction_row[head] and (name != similar_drive.joint_name or column not in ("ratio", "K1", "K3")):
+        if friction_row[head] and (
+            name != same_stiffness_entry.joint_name or column not in ("ratio", "K1", "K3")
+        ):
             numbers[column] = SourcedNumber(unit * float(friction_row[head]), "catalogue", source)
     return CatalogueEntry(name, numbers)
 

@@ -58,11 +58,11 @@ class PublishedFriction:
 
 
 class ScaledNumber(NamedTuple):
-    """Friction number from a scaling law, with the ends of its interval, all in the same unit."""
+    """Friction number from a scaling law, with the ends of its prediction interval, all in the same unit."""
 
     central_value: float
-    interval_low: float
-    interval_high: float
+    prediction_interval_low: float
+    prediction_interval_high: float
 
 
 @dataclass(frozen=True, slots=True)

@@ -68,9 +68,9 @@ def _make_joint(drawing_options: DrawingOptions) -> NewJoint:
             ):
                 drive = find_drive_with_ratio(drive, abs(value))
                 source, printed = drawing_options["source"] or drive.joint_name, dict(drive.known_numbers)
-            printed[name] = _stated_number(drawing_options, value)
+            printed[name] = _attach_source_to_stated_value(drawing_options, value)
     if drawing_options["hysteresis"] is not None:
-        printed["hysteresis_loss"] = _stated_number(
+        printed["hysteresis_loss"] = _attach_source_to_stated_value(
             drawing_options, parse_quantity_value("hysteresis", drawing_options["hysteresis"])
         )
     if missing := [
@@ -243,8 +243,8 @@ def _add_motor_drag(
     return {**friction_numbers, "friction_coulomb": total}
 
 
-def _stated_number(drawing_options: DrawingOptions, stated_value: float) -> SourcedNumber:
-    """Number that the user states, with its source text.
+def _attach_source_to_stated_value(drawing_options: DrawingOptions, stated_value: float) -> SourcedNumber:
+    """Attach its origin and source to a number that the user states in an option.
 
     The source is a catalogue row, or a replacement of a number of a named drive.
     """
@@ -400,8 +400,8 @@ NEW_JOINT_COMMAND = NewJointCommand(
         Option("catalogue", "name of the drive, as in CSG-17-100 (list: jointfmu catalogue)", "NAME"),
         Option(
             "ratio",
-            "speed ratio as catalogues print it, above 0 [1]; a negative ratio is used as stated; with "
-            "--catalogue: selects the drive with this ratio",
+            "speed ratio [1]: positive, as catalogues print it; or negative, input over output with its "
+            "sign; with --catalogue: selects the drive with this ratio",
             "R",
         ),
         Option(
@@ -416,8 +416,8 @@ NEW_JOINT_COMMAND = NewJointCommand(
         ),
         Option(
             "stiffness_unit",
-            "unit of K1, K2, K3 where you state none, as in kgf.m/arcmin; a factor in the column heading "
-            "belongs to it: '1e4 N.m/rad' (default: N.m/rad)",
+            "unit of values of K1, K2, K3 that you state without one: kgf.m/arcmin, or with the factor of "
+            "the column heading '1e4 N.m/rad' (default: N.m/rad)",
             "UNIT",
         ),
         Option(

@@ -24,7 +24,9 @@ def K_TS(
     deformation: float | None = None,
     eccentricity: float = 0.0,
 ) -> float:
-    """Stiffness K_TS [N.m/rad] of the contact pair, on the scale of the figures in Hu 2023.
+    """Torsional stiffness K_TS [N.m/rad] of the contact of flexspline and bearing, over `drive_scale`.
+
+    The quotient is on the scale of the figures in Hu 2023.
 
     torque       : [N.m]
     deformation  : [m] radial deformation of the flexspline; None: that of the drive
@@ -38,26 +40,29 @@ def K_TS(
 def smallest_K_TS(
     drive_parameters: HarmonicDriveParameters, torque: float, lower: float, upper: float
 ) -> float:
-    """Smallest stiffness K_TS [N.m/rad] of the contact pair at radial deformations `lower` to `upper` [m]."""
+    """Smallest torsional stiffness K_TS [N.m/rad] of the contact of flexspline and bearing in a range.
+
+    lower, upper : ends of the range of the flexspline's radial deformation [m]
+    """
     return min(K_TS(drive_parameters, torque, w) for w in np.linspace(lower, upper, 41).tolist())
 
 
 def relative_K_TS_change(
     drive_parameters: HarmonicDriveParameters, torque: float, eccentricity: float
 ) -> float:
-    """Relative change [%] of the contact pair's stiffness K_TS by an eccentricity [m], at a torque [N.m]."""
+    """Relative change [%] of the torsional stiffness K_TS of flexspline and bearing by eccentricity [m]."""
     return 100.0 * (
         K_TS(drive_parameters, torque, eccentricity=eccentricity) / K_TS(drive_parameters, torque) - 1.0
     )
 
 
 def K_WTS(drive_parameters: HarmonicDriveParameters, torque: float) -> float:
-    """Stiffness K_WTS [N.m/rad] of the drive at a torque [N.m]."""
+    """Torsional stiffness K_WTS [N.m/rad] of the whole drive at a torque [N.m]."""
     return float(drive_stiffness(drive_parameters, torque)[0])
 
 
 def drive_peak_pressure(drive_parameters: HarmonicDriveParameters, torque: float) -> float:
-    """Peak contact pressure [Pa] at a torque [N.m]."""
+    """Peak contact pressure [Pa] of flexspline and bearing at a torque [N.m]."""
     return float(peak_pressure(drive_parameters, torque)[0])
 
 

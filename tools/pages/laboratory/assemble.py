@@ -16,7 +16,7 @@ from jointfmu_fmu_src.templates import load_jinja_template
 
 from jointfmu.contact.roughness import RQ_OVER_RA
 from jointfmu.files.writing import write_text
-from jointfmu.parameters import ORIGIN_ALIASES, RELATIVE_HEIGHT_TOLERANCE, VALUE_ORIGINS
+from jointfmu.parameters import RELATIVE_HEIGHT_TOLERANCE, VALUE_ORIGIN_BY_FORMER_NAME, VALUE_ORIGINS
 from jointfmu.quantity import units
 from jointfmu.version import __version__
 
@@ -56,7 +56,7 @@ def render_page() -> str:
         "modules": [
             describe_module(module) | {"size": n} for module, n in zip(page_modules, sizes, strict=True)
         ],
-        "origins": [*VALUE_ORIGINS, *ORIGIN_ALIASES],
+        "origins": [*VALUE_ORIGINS, *VALUE_ORIGIN_BY_FORMER_NAME],
         "roughness": {"factor": RQ_OVER_RA, "close": RELATIVE_HEIGHT_TOLERANCE},
         "units": {base: units.unit_sizes(base, *others) for base, others in _COLUMN_UNITS.items()},
     }

@@ -12,7 +12,7 @@ from jointfmu_fmu_src.joint_parts import RampPanel
 
 
 class PublishedQuantity(NamedTuple):
-    """Output and inputs or parameters of an FMU that correspond to a published quantity and its arguments.
+    """Variables of an FMU that correspond to a published quantity, such as peak pressure, and its arguments.
 
     output_name          : output that equals the published quantity
     variable_by_argument : {argument of the published quantity: input or parameter of the FMU}

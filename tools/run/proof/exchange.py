@@ -75,7 +75,8 @@ class _ModelExchangeSimulation:
         self.continuous_inputs = [
             name
             for name in experiment_task.input_values
-            if experiment_task.variable_kinds[name] == "real" and variables[name].variability != "discrete"
+            if experiment_task.variable_data_types[name] == "real"
+            and variables[name].variability != "discrete"
         ]
         self.interval_index, self.time = 0, experiment_task.communication_points[0]
         self.first_failure: Exception | None = None

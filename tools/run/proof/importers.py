@@ -75,11 +75,11 @@ def run_ecos(experiment_task: ExperimentTask, fmu_messages: list[str]) -> Output
     with EcosSimulation(structure=structure, step_size=size) as simulation:
         suffixes = {"real": "real", "integer": "integer", "boolean": "bool"}
         setters = {
-            name: getattr(simulation, f"set_{suffixes[experiment_task.variable_kinds[name]]}")
+            name: getattr(simulation, f"set_{suffixes[experiment_task.variable_data_types[name]]}")
             for name in experiment_task.input_values
         }
         getters = {
-            name: getattr(simulation, f"get_{suffixes[experiment_task.variable_kinds[name]]}")
+            name: getattr(simulation, f"get_{suffixes[experiment_task.variable_data_types[name]]}")
             for name in experiment_task.output_names
         }
         if not simulation.init(parameter_set="start"):
@@ -124,16 +124,18 @@ def run_libcosim(experiment_task: ExperimentTask, fmu_messages: list[str]) -> Ou
     rows: OutputRows = [None]
     for i in range(len(experiment_task.communication_points) - 1):
         inputs = experiment_task.inputs_at(i)
-        for kind in set(experiment_task.variable_kinds.values()):
-            if names := [name for name in inputs if experiment_task.variable_kinds[name] == kind]:
+        for kind in set(experiment_task.variable_data_types.values()):
+            if names := [name for name in inputs if experiment_task.variable_data_types[name] == kind]:
                 setter = getattr(manipulator, f"slave_{kind}_values")
                 setter(slave, [reference[name] for name in names], [inputs[name] for name in names])
         if not execution.step():
             raise RuntimeError(get_last_error_message())
         row: dict[str, float] = {}
-        for kind in set(experiment_task.variable_kinds.values()):
+        for kind in set(experiment_task.variable_data_types.values()):
             if names := [
-                name for name in experiment_task.output_names if experiment_task.variable_kinds[name] == kind
+                name
+                for name in experiment_task.output_names
+                if experiment_task.variable_data_types[name] == kind
             ]:
                 getter = getattr(observer, f"last_{kind}_values")
                 row |= zip(names, map(float, getter(slave, [reference[name] for name in names])), strict=True)

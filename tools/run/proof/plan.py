@@ -16,7 +16,7 @@ from jointfmu.quantity import Array
 
 from .manifest import Experiment
 from .outcome import ExperimentOutcome, WorstPoint
-from .values import convert_start_setting, evaluate_stimulus, variable_kind
+from .values import convert_start_setting, evaluate_stimulus, variable_data_type
 
 if TYPE_CHECKING:
     from fmpy.model_description import ModelDescription
@@ -78,7 +78,7 @@ class ExperimentPlan:
                     n: convert_start_setting(variables[n], value)
                     for n, value in experiment.start_settings.items()
                 },
-                "variable_kinds": {n: variable_kind(variables[n]) for n in (*inputs, *outputs)},
+                "variable_data_types": {n: variable_data_type(variables[n]) for n in (*inputs, *outputs)},
             }
             if stimuli:
                 for key, left_limit in (("input_values", False), ("input_values_before_jump", True)):

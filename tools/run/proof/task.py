@@ -22,7 +22,7 @@ class ExperimentTask:
     input_values : {input: values (n)}; at a jump the value after it
     input_values_before_jump : {input: values (n)}; at a jump the value before it
     output_names : names of the variables to be read, in the order of the columns of the result
-    variable_kinds     : {variable: kind} of inputs and outputs: "real", "integer" or "boolean"
+    variable_data_types : {variable: data type} of inputs and outputs: "real", "integer" or "boolean"
     solver_tolerance : relative tolerance of the solver [1]
     comparison_times : times [s] at which outputs are compared; empty: outputs at all communication points
     """
@@ -35,7 +35,7 @@ class ExperimentTask:
     input_values: Mapping[str, Sequence[float]] = field(default_factory=dict)
     input_values_before_jump: Mapping[str, Sequence[float]] = field(default_factory=dict)
     output_names: Sequence[str] = ()
-    variable_kinds: Mapping[str, str] = field(default_factory=dict)
+    variable_data_types: Mapping[str, str] = field(default_factory=dict)
     solver_tolerance: float = 1e-5
     comparison_times: Sequence[float] = ()
 
@@ -51,14 +51,16 @@ class ExperimentTask:
         """
         if self.communication_points[0] != 0.0:
             raise ValueError(
-                f"its start time is {self.communication_points[0]:g} s; this importer starts at 0 s only, "
-                "use fmpy"
+                f"its start time is {self.communication_points[0]:g} s; this importer starts at 0 s only: "
+                "use --in fmpy"
             )
         size = (self.communication_points[-1] - self.communication_points[0]) / max(
             len(self.communication_points) - 1, 1
         )
         if any(abs(time - i * size) > 1e-6 * size for i, time in enumerate(self.communication_points)):
-            raise ValueError("its steps have different sizes; this importer takes equal steps: use fmpy")
+            raise ValueError(
+                "its time steps are not equal; this importer takes equal steps only: use --in fmpy"
+            )
         return size
 
     def mask_unneeded_rows(self, output_rows: "OutputRows") -> "OutputRows":

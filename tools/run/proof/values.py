@@ -13,22 +13,22 @@ if TYPE_CHECKING:
     from fmpy.model_description import ScalarVariable
 
 
-KINDS_OF_FMI_TYPES = {
+DATA_TYPE_BY_FMI_TYPE = {
     **dict.fromkeys(FMI_REAL_TYPES, "real"),
     "Boolean": "boolean",
     **dict.fromkeys(("Integer", "Enumeration", "Int32", "Int64"), "integer"),
 }
-"""{FMI type: kind} of possible inputs and compared outputs; in CSV files booleans are 0 or 1."""
+"""{FMI type: data type} of possible inputs and compared outputs; in CSV files booleans are 0 or 1."""
 
 
-def variable_kind(fmu_variable: "ScalarVariable") -> str:
-    """Kind of an FMU variable: "real", "integer" or "boolean"; ValueError for other types and arrays."""
-    if fmu_variable.type not in KINDS_OF_FMI_TYPES or fmu_variable.dimensions:
+def variable_data_type(fmu_variable: "ScalarVariable") -> str:
+    """Data type of an FMU variable: "real", "integer" or "boolean"; ValueError for other types and arrays."""
+    if fmu_variable.type not in DATA_TYPE_BY_FMI_TYPE or fmu_variable.dimensions:
         text = "an array" if fmu_variable.dimensions else f"of type {fmu_variable.type}"
         raise ValueError(
             f"{fmu_variable.name} is {text}; only single real, integer and Boolean variables can be compared"
         )
-    return KINDS_OF_FMI_TYPES[fmu_variable.type]
+    return DATA_TYPE_BY_FMI_TYPE[fmu_variable.type]
 
 
 def convert_start_setting(fmu_variable: "ScalarVariable", start_setting: StartSetting) -> object:
@@ -55,8 +55,8 @@ def convert_start_setting(fmu_variable: "ScalarVariable", start_setting: StartSe
 
 
 def convert_value(fmu_variable: "ScalarVariable", numeric_value: float) -> float | int | bool:
-    """Convert a number to the kind of a variable: real, integer or boolean. ValueError if it does not fit."""
-    if (kind := variable_kind(fmu_variable)) == "real":
+    """Convert a number to the data type of an FMU variable; ValueError if it does not fit."""
+    if (kind := variable_data_type(fmu_variable)) == "real":
         return numeric_value
     number = int(numeric_value)
     if number != numeric_value or (kind == "boolean" and number not in (0, 1)):
@@ -76,7 +76,7 @@ def evaluate_stimulus(
     takes_value_before_jump : at a jump, take the value before it instead of the value after it; real inputs
         only
     """
-    if variable_kind(fmu_variable) != "real":
+    if variable_data_type(fmu_variable) != "real":
         return [
             convert_value(fmu_variable, value)
             for value in stimuli.interpolate_stepwise(fmu_variable.name, communication_points).tolist()
@@ -92,7 +92,7 @@ def evaluate_stimulus(
 def has_start_value(fmu_variable: "ScalarVariable") -> bool:
     """Whether a variable is a parameter or input with a start value that can be compared."""
     is_settable = fmu_variable.causality in ("parameter", "input") and fmu_variable.start is not None
-    return is_settable and fmu_variable.type in KINDS_OF_FMI_TYPES and not fmu_variable.dimensions
+    return is_settable and fmu_variable.type in DATA_TYPE_BY_FMI_TYPE and not fmu_variable.dimensions
 
 
 def read_start_value(fmu_variable: "ScalarVariable") -> float | int | bool:

@@ -191,7 +191,7 @@ def _make_row_error(journal_path: Path, row_number: int, error_reason: str) -> V
 def _check_journal_entry(journal_entry: object) -> None:
     """Raise ValueError if a JSON value is no journal entry of a run."""
     if not isinstance(journal_entry, dict):
-        raise ValueError("is not a JSON object")
+        raise ValueError(f"{_format_json_value(journal_entry)} is not a JSON object")
     run, parameters = journal_entry.get("run"), journal_entry.get("parameters")
     if type(run) is not int or run < 0:
         raise ValueError(f"run = {_format_json_value(run)} is not the number of a run, 0, 1, 2, ...")

@@ -191,7 +191,9 @@ class JointRampEvaluator:
         Cached properties may be functions, which pickle rejects.
         """
         stated = self.parameter_file.values_by_name
-        values = assemble_parameter_set(type(self.parameter_file.values), stated, _make_unchecked_instance)
+        values = assemble_parameter_set(
+            type(self.parameter_file.values), stated, _make_unchecked_parameter_set
+        )
         return {**self.__dict__, "parameter_file": replace(self.parameter_file, values=values)}
 
     @property
@@ -289,7 +291,9 @@ class _SampledJoint:
             for name, value in sampled_values.items()
         }
         self.parameter_set: Any = assemble_parameter_set(
-            type(base), {**joint_evaluator.parameter_file.values_by_name, **numbers}, _make_unchecked_instance
+            type(base),
+            {**joint_evaluator.parameter_file.values_by_name, **numbers},
+            _make_unchecked_parameter_set,
         )
         self._fixed_inputs = curves.fixed_inputs(self.parameter_set)
 
@@ -303,8 +307,11 @@ class _SampledJoint:
         ).variable_columns
 
 
-def _make_unchecked_instance(cls: type[Any], attributes: Mapping[str, Any]) -> Any:
-    """Make an instance of a frozen dataclass without checking its values; the FMU checks them."""
+def _make_unchecked_parameter_set(cls: type[Any], attributes: Mapping[str, Any]) -> Any:
+    """Make a parameter set, or one of its groups, without checking the values; the FMU checks them.
+
+    cls : frozen dataclass of the set or group
+    """
     instance = object.__new__(cls)
     for name, value in attributes.items():
         object.__setattr__(instance, name, value)

@@ -207,7 +207,7 @@ def _count_motion_outputs(system_model: SystemModel, component: SystemComponent)
 
     The last of them is the last acceleration of a body, or the last output that is the source of an input.
     """
-    used = {feed for p in system_model.components for feed in p.input_sources.values()}
+    used = {feed for p in system_model.components for feed in p.source_by_input.values()}
     indices = [k for k, v in enumerate(component.fmu_model.outputs, 1) if (component.name, v.name) in used]
     return max([3 * component.degree_of_freedom_count, *indices])
 
@@ -232,7 +232,7 @@ def _format_components_c(
     declared += [f"extern const Data {name};\n" for name in data_name_by_component.values()]
     for component in system_model.components:
         model, prefix = component.fmu_model, prefix_by_component[component.name]
-        sources = [component.input_sources.get(v.name, (component.name, v.name)) for v in model.inputs]
+        sources = [component.source_by_input.get(v.name, (component.name, v.name)) for v in model.inputs]
         wires += [str(reference[full_name(*feed)] if feed else 0) for feed in sources]
         wires += [str(reference[component.full_name(v.name)]) for v in model.outputs]
         events = _count_time_events(component)

@@ -34,17 +34,17 @@ class InputSource(NamedTuple):
 class SystemComponent:
     """Component of a system: load, joint or body.
 
-    name          : empty for a component whose variables have no prefix
-    fmu_model     : model of its FMU; that of a body lacks the parameters in FORCE_LAG_PARAMETERS
-    input_sources : {input: its source}; None: the input is zero. Inputs without an entry are inputs of the
+    name            : empty for a component whose variables have no prefix
+    fmu_model       : model of its FMU; that of a body lacks the parameters in FORCE_LAG_PARAMETERS
+    source_by_input : {input: its source}; None: the input is zero. Inputs without an entry are inputs of the
         system
-    start_values  : {input of the system: start value} if it is not zero
+    start_values    : {input of the system: start value} if it is not zero
     """
 
     name: str
     fmu_model: Model
     parameter_file: ParameterFile
-    input_sources: Mapping[str, InputSource | None]
+    source_by_input: Mapping[str, InputSource | None]
     start_values: Mapping[str, float]
 
     def full_name(self, variable_name: str) -> str:
@@ -54,7 +54,7 @@ class SystemComponent:
     @property
     def system_inputs(self) -> list[Variable]:
         """Inputs of the component that no other component drives: they are inputs of the system's FMU."""
-        return [v for v in self.fmu_model.inputs if v.name not in self.input_sources]
+        return [v for v in self.fmu_model.inputs if v.name not in self.source_by_input]
 
     @property
     def degree_of_freedom_count(self) -> int:
@@ -182,7 +182,7 @@ class SystemModel:
             for v in component.fmu_model.outputs[component.fmu_model.state_count :]:
                 sources: dict[str, None] = {}
                 for name in component.fmu_model.list_dependencies(v.name):
-                    feed = component.input_sources.get(name, InputSource(component.name, name))
+                    feed = component.source_by_input.get(name, InputSource(component.name, name))
                     if feed:
                         sources |= dependencies[full_name(*feed)]
                 dependencies[component.full_name(v.name)] = sources

@@ -215,7 +215,7 @@ def _simulate_outputs(
             MODEL_EXCHANGE,
             communication_points=output_times.tolist(),
             output_names=names,
-            variable_kinds=dict.fromkeys(names, "real"),
+            variable_data_types=dict.fromkeys(names, "real"),
             solver_tolerance=solver_tolerance,
         )
         try:

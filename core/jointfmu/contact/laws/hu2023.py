@@ -227,9 +227,14 @@ def corrected_spot_distribution(law_parameters: Hu2023) -> SpotDistribution:
         regime_index: int,
         first_regime_lower_log_area: Number = None,
     ) -> PowerTerm:
-        """Power law coefficient (s/s_ec)^exponent of the spot area s in a regime, as a function of s/s_min.
+        """Load or stiffness of a contact spot in one regime: coefficient times (s/s_ec)^exponent.
 
-        first_regime_lower_log_area : log-area ln(s/s_min) at which regime 0, elastic contact, begins
+        s is the area of the spot, s_ec the largest area of an elastic spot, s_min the smallest spot area. The
+        result is a function of the log-area ln(s/s_min).
+
+        power_law_coefficient       : load [N] or stiffness [N/m] at s = s_ec, by this power law
+        regime_index                : 0 elastic, 1 and 2 elastic-plastic, 3 plastic
+        first_regime_lower_log_area : log-area at which regime 0 begins; None: minus infinity
         """
         lower = bounds[regime_index] if regime_index else first_regime_lower_log_area
         upper = bounds[regime_index + 1] if regime_index < 3 else None

@@ -20,7 +20,7 @@ def stick_radius_ratio(traction_ratio: Number) -> tuple[Number, Number]:
     return np.exp(log), -np.expm1(log)
 
 
-def dissipation_function(traction_ratio: Number) -> Number:
+def dissipated_energy_function(traction_ratio: Number) -> Number:
     """Function H1 [1] of the dissipated energy, Zhao 2018, Eq. 23.
 
     H1 = 1 - v^5 - (5x/6)(1 + v^2) = (1 - v)^3 (1 + 3v + v^2)/6, with the traction ratio x and the stick
@@ -30,7 +30,7 @@ def dissipation_function(traction_ratio: Number) -> Number:
     return slip**3 * (1.0 + 3.0 * v + v**2) / 6.0
 
 
-def storage_function(traction_ratio: Number) -> Number:
+def stored_energy_function(traction_ratio: Number) -> Number:
     """Function H2 [1] of the stored energy, Zhao 2018, Eq. 25.
 
     H2 = 3/5 + (2/5) v^5 - v^2 = (1 - v)^2 (3 + 6v + 4v^2 + 2v^3)/5, with the stick radius ratio v.
@@ -42,7 +42,7 @@ def storage_function(traction_ratio: Number) -> Number:
 def loss_ratio(traction_ratio: Number) -> Number:
     """Dissipated energy W_d of a shear cycle divided by W, 2 pi times the stored energy: 12 H1/(5 pi H2) [1].
 
-    H1: `dissipation_function`, H2: `storage_function`.
+    H1: `dissipated_energy_function`, H2: `stored_energy_function`.
     """
     v, slip = stick_radius_ratio(traction_ratio)
     return 2.0 / np.pi * slip * (1.0 + 3.0 * v + v**2) / (3.0 + 6.0 * v + 4.0 * v**2 + 2.0 * v**3)

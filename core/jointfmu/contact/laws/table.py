@@ -51,27 +51,31 @@ class LogSpline(NamedTuple):
 
     K_1 and p_1 are stiffness and pressure of the first point of the table, where y = u = 0.
 
-    u, y      : (n) values at the n points [1]
-    exponents : (n) slopes dy/du = d(ln K)/d(ln p) at the points [1]
+    log_pressures, log_stiffnesses : (n) u and y at the n points [1]
+    exponents                      : (n) slopes dy/du = d(ln K)/d(ln p) at the points [1]
     """
 
-    u: Sequence[Number]
-    y: Sequence[Number]
+    log_pressures: Sequence[Number]
+    log_stiffnesses: Sequence[Number]
     exponents: Sequence[Number]
 
     def evaluate_log_stiffness(self, log_pressure: Number) -> tuple[Number, Number]:
         """Log-stiffness y and its slope dy/du at log-pressures u, extrapolated below and above the points."""
         below = np.minimum(log_pressure, 0.0)
         y, slope = self.exponents[0] * below, self.exponents[0]
-        for i in range(len(self.u) - 1):
-            length = np.maximum(self.u[i + 1] - self.u[i], _MIN_SEGMENT_LENGTH)
-            rise, first, last = self.y[i + 1] - self.y[i], self.exponents[i], self.exponents[i + 1]
+        for i in range(len(self.log_pressures) - 1):
+            length = np.maximum(self.log_pressures[i + 1] - self.log_pressures[i], _MIN_SEGMENT_LENGTH)
+            rise, first, last = (
+                self.log_stiffnesses[i + 1] - self.log_stiffnesses[i],
+                self.exponents[i],
+                self.exponents[i + 1],
+            )
             a = 3.0 * rise / length - 2.0 * first - last
             b = first + last - 2.0 * rise / length
-            t = np.minimum(np.maximum((log_pressure - self.u[i]) / length, 0.0), 1.0)
+            t = np.minimum(np.maximum((log_pressure - self.log_pressures[i]) / length, 0.0), 1.0)
             y = y + length * t * (first + t * (a + t * b))
             slope = slope + t * (2.0 * a + 3.0 * b * t)
-        return y, np.where(log_pressure < self.u[-1], slope, 0.0)
+        return y, np.where(log_pressure < self.log_pressures[-1], slope, 0.0)
 
 
 def monotone_spline(point_pressures: Array, point_stiffnesses: Array) -> LogSpline:
@@ -223,7 +227,7 @@ class TableLaw(CheckedParameters):
             },
             onset_log_area=float(np.log(ONSET_PRESSURE_OVER_FIRST_POINT_PRESSURE)),
             has_spot_area=False,
-            kink_log_areas=tuple(spline.u[:-1]),
+            kink_log_areas=tuple(spline.log_pressures[:-1]),
         )
 
     def find_range_violations(self, lowest_pressure: float, highest_pressure: float) -> list[str]:
@@ -247,9 +251,12 @@ class TableLaw(CheckedParameters):
         return self.table.ratio
 
     def loss_factor(self) -> Number:
-        """Loss factor eta_t [1] at the traction ratio, with the mean exponent of the points."""
+        """Loss factor eta_t [1] of a shear cycle at the parameter `traction_ratio`.
+
+        The exponent n of stiffness ~ pressure^n is the mean from the first to the last point of the table.
+        """
         spline = self.table.spline
-        return loss_factor(self.traction_ratio, spline.y[-1] / spline.u[-1])
+        return loss_factor(self.traction_ratio, spline.log_stiffnesses[-1] / spline.log_pressures[-1])
 
     def contact_quantities(self, largest_log_area: Number) -> dict[str, Number]:
         """Contact quantities of the nominal area A_0 at u = ln(p/p_1), p_1: pressure of the first point.

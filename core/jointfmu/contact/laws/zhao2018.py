@@ -226,6 +226,6 @@ def shear_energies(
         / contact_shear_modulus(law_parameters.side1, law_parameters.side2)
         * spot_area_power_sum
     )
-    dissipated = 0.9 * common * mindlin.dissipation_function(law_parameters.traction_ratio)
-    stored = 0.375 * np.pi * common * mindlin.storage_function(law_parameters.traction_ratio)
+    dissipated = 0.9 * common * mindlin.dissipated_energy_function(law_parameters.traction_ratio)
+    stored = 0.375 * np.pi * common * mindlin.stored_energy_function(law_parameters.traction_ratio)
     return dissipated, stored

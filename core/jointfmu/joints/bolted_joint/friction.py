@@ -145,7 +145,10 @@ class FrictionLaw:
         return self._cached_foundation(*(np.ascontiguousarray(each).tobytes() for each in both))
 
     def stick_tangent(self, patch_approach: Array) -> Array:
-        """Tangent (m, 6) [Pa/m] of patches in full stick at approaches (m) [m]."""
+        """Tangent stiffness (m, 6) [Pa/m] of the friction of m patches in full stick, at approaches (m) [m].
+
+        The 6 components are xx, xy, yy, xr, yr, rr; r is the displacement around the centre of the patch [m].
+        """
         return np.asarray(
             self.foundation().stick_stiffness(patch_approach)[:, None] * FULL_STICK_TANGENT_OVER_STIFFNESS
         )

@@ -80,7 +80,7 @@ class PrescribedDriveParameters(DriveParameters):
     """Outputs that a prescribed midline does not determine; they are not drawn."""
 
     @abstractmethod
-    def make_midline_nodes(self) -> Sequence[SplineNode]:
+    def make_midline_spline_nodes(self) -> Sequence[SplineNode]:
         """Make the spline nodes of the midline, torque as a function of wind-up, for wind-ups >= 0."""
 
     @property
@@ -208,7 +208,7 @@ class CatalogueDriveParameters(PrescribedDriveParameters):
         """Torque [N.m] at the end of the catalogue's first line, where the first smoothed corner begins."""
         return self.T1 - self.K1 * self.corner_half_width_over_wind_up * self.corner_wind_ups[0]
 
-    def make_midline_nodes(self) -> list[SplineNode]:
+    def make_midline_spline_nodes(self) -> list[SplineNode]:
         """Make the spline nodes of the midline: lost motion, both ends of each corner, end of the table."""
         (first, second), (K1, K2, K3) = self.corner_wind_ups, (self.K1, self.K2, self.K3)
         first_width = self.corner_half_width_over_wind_up * first
@@ -216,7 +216,7 @@ class CatalogueDriveParameters(PrescribedDriveParameters):
         end = self.max_table_torque
         play_angle = lost_motion_angle(self, self._first_line_torque)[0]
         return [
-            *self._play_nodes(),
+            *self._play_spline_nodes(),
             SplineNode(first - first_width + play_angle, self._first_line_torque, K1),
             SplineNode(first + first_width + play_angle, self.T1 + K2 * first_width, K2),
             SplineNode(second - second_width + play_angle, self.T2 - K2 * second_width, K2),
@@ -224,7 +224,7 @@ class CatalogueDriveParameters(PrescribedDriveParameters):
             SplineNode(second + (end - self.T2) / K3 + play_angle, end, K3),
         ]
 
-    def _play_nodes(self) -> list[SplineNode]:
+    def _play_spline_nodes(self) -> list[SplineNode]:
         """Spline nodes of the first catalogue line in series with lost motion; denser at small torque."""
         end_torque = np.minimum(
             PLAY_END_TORQUE_OVER_PLAY_TORQUE * PLAY_TORQUE_OVER_RATED_TORQUE * self.rated_torque,
@@ -303,13 +303,13 @@ class TableDriveParameters(MeasuredDriveParameters):
     @cached_property
     def K_FTS(self) -> float:
         """Stiffness K_FTS [N.m/rad] of circular spline and flexspline: twice the largest of the midline."""
-        columns = np.array(self.make_midline_nodes(), dtype=np.float64).T
+        columns = np.array(self.make_midline_spline_nodes(), dtype=np.float64).T
         x, y, s, slope_before, slope_after = columns
         return 2.0 * float(
             np.max(_sample_stiffness(np.diff(x), np.diff(y), s, slope_after[:-1], slope_before[1:]))
         )
 
-    def make_midline_nodes(self) -> list[SplineNode]:
+    def make_midline_spline_nodes(self) -> list[SplineNode]:
         """Make the spline nodes of the midline: at zero, and at each point of the measured table."""
         x, y = (np.array([0.0, *values]) for values in (self.table.angle, self.table.torque))
         h, torque_steps = np.diff(x), np.diff(y)

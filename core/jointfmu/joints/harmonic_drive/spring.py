@@ -47,7 +47,7 @@ def torque_curve(drive_parameters: DriveParameters) -> Curve:
         return refine_curve(lambda steps: _tabulate_midline(drive_parameters, steps), MIN_MIDLINE_TABLE_STEPS)
     if isinstance(drive_parameters, PrescribedDriveParameters):
         x, y, s, slope_before, slope_after = np.array(
-            drive_parameters.make_midline_nodes(), dtype=np.float64
+            drive_parameters.make_midline_spline_nodes(), dtype=np.float64
         ).T
         return Curve(x, y, s, slope_after[:-1], slope_before[1:])
     expected = "ContactPairDriveParameters nor PrescribedDriveParameters"
@@ -66,10 +66,11 @@ def _tabulate_midline(drive_parameters: ContactPairDriveParameters, step_count: 
         & (K < (1.0 - MIN_FLEXSPLINE_OVER_CONTACT_STIFFNESS) * drive_parameters.K_FTS0)
     ):
         raise ValueError(
-            f"K_WTS = {K[-1]:g} N.m/rad of the contact pair (K_TS) in series with "
-            f"K_FTS0 = {drive_parameters.K_FTS0:g} N.m/rad is outside ({MIN_DRIVE_STIFFNESS:g}, "
-            f"{drive_parameters.K_FTS0:g}) N.m/rad, or K_TS is above "
-            f"{1.0 / MIN_FLEXSPLINE_OVER_CONTACT_STIFFNESS:g} K_FTS0; check K_FTS0 and the contact pair"
+            f"drive stiffness K_WTS = {K[-1]:g} N.m/rad, of the contact pair in series with the flexspline "
+            f"K_FTS0 = {drive_parameters.K_FTS0:g} N.m/rad, is outside ({MIN_DRIVE_STIFFNESS:g}, "
+            f"{drive_parameters.K_FTS0:g}) N.m/rad, or the contact pair is more than "
+            f"{1.0 / MIN_FLEXSPLINE_OVER_CONTACT_STIFFNESS:g} times as stiff as K_FTS0; check K_FTS0 and the "
+            "surface"
         )
     inner = xi[:-1, None] + half * (1.0 + GAUSS_NODES_AND_WEIGHTS[0])
     rate = smoothing * np.cosh(inner) / stiffness_with_play(drive_parameters, smoothing * np.sinh(inner))[0]

@@ -223,9 +223,9 @@ def preserved_sum_functions(
 
 
 def _scaled_preserved_functions(pressure_distribution: PressureDistribution) -> Array:
-    """Functions (12, n) of the nodes whose sums are kept, scaled to the order of 1.
+    """Functions (12, n) of n nodes, scaled to the order of 1; a reduction keeps their sums over the nodes.
 
-    See `preserved_sum_functions`.
+    These are 1, x, y, x^2, x y, y^2, and the pressure ratios of preload and moment, each times 1, x and y.
     """
     steep = max(float(np.max(np.abs(pressure_distribution.moment_pressure_ratio))), 1.0)
     return preserved_sum_functions(

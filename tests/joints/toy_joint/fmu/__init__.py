@@ -8,5 +8,7 @@ from jointfmu_fmu_src.joint_parts.terminals import TRANSLATIONAL_FLANGE_CLASS, T
 WIRES = {"s": ("s_rel", "signal"), "f": ("f", "outflow")}
 FLANGES = (Terminal("flange", TRANSLATIONAL_FLANGE_CLASS, "b", "side 2, side 1 fixed", WIRES),)
 FMU_BUILD_DATA = FmuBuildData(
-    Path(__file__).parent, load_explicit_equations_definition, terminals={"ToySpring": FLANGES}
+    joint_folder=Path(__file__).parent,
+    load_native_definition=load_explicit_equations_definition,
+    terminals={"ToySpring": FLANGES},
 )

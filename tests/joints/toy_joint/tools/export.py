@@ -15,4 +15,5 @@ def _line(spring, state, error):
 
 
 COLUMNS = (KIND.variables["s_rel"], Variable("pull", "N", "force that holds it"), KIND.variables["K"])
-EXPORTS = JointExports(curve=LoadCurveExport("force over s", COLUMNS, "force", compute_table=_line))
+CURVE = {"curve_meaning": "force", "curve_variables": COLUMNS, "table_name": "force"}
+EXPORTS = JointExports(curve=LoadCurveExport(**CURVE, compute_table=_line))

@@ -32,7 +32,7 @@ def declare_assembly_arguments(parser: argparse.ArgumentParser) -> None:
         parser,
         "--params",
         Path,
-        "parameter file of a bolted joint, for the interface (default: box specimen of Zhao 2018)",
+        "parameter file of a bolted joint, whose interface is used (default: box specimen of Zhao 2018)",
     )
 
 

@@ -95,8 +95,8 @@ def _declare_import(subcommand_parsers: SubParsers) -> None:
     text = "files that belong to a listing: more listings, or its mesh (ANSYS archive .cdb, Abaqus deck .inp)"
     step.add_argument("--with", dest="beside", nargs="+", type=Path, default=[], metavar="FILE", help=text)
     text = (
-        "largest difference between contact force and bolt force, over the bolt force [1]; the pressures "
-        "are then scaled to the "
+        "largest allowed difference of contact force and bolt force, divided by the bolt force [1]; the "
+        "pressures are scaled to the "
     )
     declare_argument(step, "--force-tolerance", float, text + "bolt force (default: 0.01)", "P")
     declare_argument(

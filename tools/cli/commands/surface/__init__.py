@@ -233,10 +233,13 @@ def _find_table_points(
     return interface_points_from_solution(maps, args.side == "both", materials, files)
 
 
-def _check_rms_heights(identified_surface: "SurfaceIdentification", accept_any_height: bool) -> None:
-    """Raise ValueError for rms heights that no machined surface has; most often the unit is wrong."""
+def _check_rms_heights(identified_surface: "SurfaceIdentification", accept_implausible_heights: bool) -> None:
+    """Raise ValueError for rms heights that no machined surface has; most often the unit is wrong.
+
+    accept_implausible_heights : no check, as the user has confirmed the heights
+    """
     for name, scan in zip(identified_surface.file_names, identified_surface.scan_roughnesses, strict=True):
-        if scan.rms_height > MAX_PLAUSIBLE_RMS_HEIGHT and not accept_any_height:
+        if scan.rms_height > MAX_PLAUSIBLE_RMS_HEIGHT and not accept_implausible_heights:
             raise InputRefusal(
                 f"{name}: the rms height is {1e6 * scan.rms_height:.4g} um, surfaces in contact have up to "
                 f"{1e6 * MAX_PLAUSIBLE_RMS_HEIGHT:g} um; state the right unit of z, or confirm the height",

@@ -163,8 +163,8 @@ def _estimate_to_json(parameter_estimate: Estimate) -> dict[str, float | None]:
     """JSON object of an estimated surface parameter with its confidence interval."""
     return {
         "value": _finite_or_none(parameter_estimate.estimated_value),
-        "low": _finite_or_none(parameter_estimate.interval_low),
-        "high": _finite_or_none(parameter_estimate.interval_high),
+        "low": _finite_or_none(parameter_estimate.confidence_interval_low),
+        "high": _finite_or_none(parameter_estimate.confidence_interval_high),
     }
 
 
@@ -334,8 +334,8 @@ def _format_stiffness(identified_surface: SurfaceIdentification, parameter_file:
         what = "one side, the other smooth"
     return (
         f"stiffness per area p/({PERSSON_GAMMA:g} h) = "
-        f"{predicted_stiffness(PRESSURE_OF_STATED_STIFFNESS, h):.3g} N/m3 per MPa "
-        f"(h = {1e6 * h:.4g} um of {what})"
+        f"{predicted_stiffness(PRESSURE_OF_STATED_STIFFNESS, h):.3g} N/m3 per MPa (h = {1e6 * h:.4g} um of "
+        f"{what})"
     )
 
 
@@ -377,6 +377,6 @@ def _format_estimate(parameter_estimate: Estimate, number_format: str) -> str:
         return "not determined"
     return (
         f"{parameter_estimate.estimated_value:{number_format}} "
-        f"[{parameter_estimate.interval_low:{number_format}}, "
-        f"{parameter_estimate.interval_high:{number_format}}]"
+        f"[{parameter_estimate.confidence_interval_low:{number_format}}, "
+        f"{parameter_estimate.confidence_interval_high:{number_format}}]"
     )

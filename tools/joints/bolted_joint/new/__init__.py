@@ -152,7 +152,12 @@ NEW_JOINT_COMMAND = NewJointCommand(
             "side 2 at +x), or faces under heads and nuts (default: faces)",
             choices=tuple(ATTACHMENT_SURFACES),
         ),
-        Option("law", "contact law of the interface (default: roughness)", choices=("roughness", "zhao2018")),
+        Option(
+            "law",
+            "contact law of the interface: roughness, from the heights of the faces, or zhao2018, the "
+            "fractal law of Zhao 2018 (default: roughness)",
+            choices=("roughness", "zhao2018"),
+        ),
         *FACE_OPTIONS,
     ),
     make_joint=_make_joint,

@@ -211,7 +211,8 @@ def _describe_mesh_changes(changes_between_meshes: dict[str, float]) -> str:
 def _contact_outline(assembly: "Assembly", centroid: Array) -> tuple[float, ...]:
     """Bounding box of the contact relative to its centroid: x_min, y_min, x_max, y_max [m]."""
     half = np.min(
-        [side.layers()[0].outline_half_lengths for side in (assembly.side1, assembly.side2)], axis=0
+        [side.list_rectangular_layers()[0].outline_half_lengths for side in (assembly.side1, assembly.side2)],
+        axis=0,
     )
     return tuple(np.concatenate([-half - centroid, half - centroid]).tolist())
 

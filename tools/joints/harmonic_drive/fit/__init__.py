@@ -98,8 +98,8 @@ FIT_PROCEDURES = (
             ),
             Option(
                 "stiffness_unit",
-                "unit of K1, K2, K3 where you state none, as in kgf.m/arcmin; a factor in the column "
-                "heading belongs to it: '1e4 N.m/rad' (default: N.m/rad)",
+                "unit of values of K1, K2, K3 that you state without one: kgf.m/arcmin, or with the factor "
+                "of the column heading '1e4 N.m/rad' (default: N.m/rad)",
                 "TEXT",
             ),
             Option("rated_torque", "rated torque [N.m] (default: the value of --T2)", default_unit="N.m"),

@@ -359,7 +359,7 @@ def _fit_rotor_inertia(
     if parameter_file.law != "catalogue":
         return None
     square = fitted_log.fitted_drive.ratio**2
-    load, spread = fitted_log.evaluate_tooth_load_and_deviations(log_samples)
+    load, spread = fitted_log.evaluate_transmitted_torque_and_deviations(log_samples)
     phi = hysteresis.measured_wind_up(log_samples, abs(fitted_log.fitted_drive.ratio))
     return hysteresis.fit_rotor_inertia(
         parameter_file, phi, -load, -spread, square * log_samples.ddq, fitted_log.total_inertia / square
@@ -390,7 +390,7 @@ def _fit_stiffness(
     load, spread = log_samples.sensor_torque, np.zeros((0, log_samples.q.size))
     if not log_samples.has_joint_torque_sensor:
         assert fitted_log is not None
-        load, spread = fitted_log.evaluate_tooth_load_and_deviations(log_samples)
+        load, spread = fitted_log.evaluate_transmitted_torque_and_deviations(log_samples)
     return hysteresis.fit_robot_log(
         parameter_file,
         names,
@@ -483,7 +483,7 @@ def _check_speeds(file_label: str, log_samples: LogSamples) -> None:
     if speed.size == 0:
         raise ValueError(
             f"{file_label}: the joint never turns far enough in one direction for friction to build up; "
-            "record longer motions"
+            "record motions with larger angles between reversals"
         )
     if speed.max() < MIN_LARGEST_OVER_SMALLEST_SPEED * speed.min():
         raise ValueError(

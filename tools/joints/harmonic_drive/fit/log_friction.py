@@ -6,9 +6,10 @@ All torques are positive in the direction of the joint angle q, so that the rati
 sensor at the joint, the measured torque over the ratio takes the place of gravity and of the inertia torque
 of the arm; the inertia is then that of the rotor. Three terms are linear in their unknowns and are
 eliminated: the inertia, an offset of the current, and gravity = a cos(q) + b sin(q) if it is not measured.
-The load of the teeth is gravity plus the inertia torque of the arm, that is of the total inertia without the
-rotor; or the torque of the sensor. The other unknowns are fitted over their logarithms. The load depends on
-them: it is fixed during each fit, and updated for the next of LOAD_ITERATION_COUNT fits.
+The load, the torque that the teeth transmit, is gravity plus the inertia torque of the arm, that is of the
+total inertia without the rotor; or the torque of the sensor. The other unknowns are fitted over their
+logarithms. The load depends on them: it is fixed during each fit, and updated for the next of
+LOAD_ITERATION_COUNT fits.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -73,10 +74,10 @@ class LinearTorqueTerms:
             else np.zeros(0)
         )
 
-    def tooth_load(
+    def evaluate_transmitted_torque(
         self, log_samples: LogSamples, linear_unknowns: Array, speed_ratio: float, rotor_inertia: float
     ) -> Array:
-        """Load (n) [N.m] of the teeth: torque of the drive on the arm, positive in the direction of q.
+        """Torque (n) [N.m] that the teeth transmit to the arm, at the joint, positive in the direction of q.
 
         rotor_inertia : [kg.m2]
         """
@@ -90,26 +91,26 @@ class LinearTorqueTerms:
 
 
 def motor_friction(
-    drive_parameters: DriveParameters, joint_speed: Array, temperature: Array, tooth_load: Array
+    drive_parameters: DriveParameters, joint_speed: Array, temperature: Array, transmitted_torque: Array
 ) -> Array:
     """Friction torque (...) [N.m] at the motor, of a moving drive.
 
-    joint_speed : speed (...) [rad/s] of the joint
-    temperature : (...) [K] of the lubricant; NaN: reference temperature of the parameters
-    tooth_load  : (...) [N.m] of the teeth, at the joint
+    joint_speed        : speed (...) [rad/s] of the joint
+    temperature        : (...) [K] of the lubricant; NaN: reference temperature of the parameters
+    transmitted_torque : (...) [N.m] torque that the teeth transmit to the arm, at the joint
     """
     forward = replace(drive_parameters, ratio=abs(drive_parameters.ratio))
     warmth = np.where(np.isfinite(temperature), temperature, REFERENCE_TEMPERATURE)
     w1 = forward.ratio * joint_speed
-    positive, negative = friction_limits(forward, w1, -tooth_load, warmth)
+    positive, negative = friction_limits(forward, w1, -transmitted_torque, warmth)
     return np.asarray(np.where(w1 > 0.0, positive, -negative) + viscous_torque(forward, w1, warmth))
 
 
 def filtered_motor_friction(
-    drive_parameters: DriveParameters, log_samples: LogSamples, tooth_load: Array
+    drive_parameters: DriveParameters, log_samples: LogSamples, transmitted_torque: Array
 ) -> Array:
     """Friction torque (n) [N.m] at samples, smoothed by the filter of the log."""
-    warmth, carried = log_samples.temperature[:, None], tooth_load[:, None]
+    warmth, carried = log_samples.temperature[:, None], transmitted_torque[:, None]
     return np.asarray(
         np.sum(
             log_samples.window_weights
@@ -203,29 +204,31 @@ class FittedLogFriction:
         """Friction torque (n) [N.m] and total torque (n) [N.m] of the motor at samples."""
         ratio = abs(self.fitted_drive.ratio)
         terms = LinearTorqueTerms.evaluate_at_samples(log_samples, ratio)
-        load = terms.tooth_load(log_samples, self.linear_unknowns, ratio, self.rotor_inertia)
+        load = terms.evaluate_transmitted_torque(log_samples, self.linear_unknowns, ratio, self.rotor_inertia)
         friction_torque = filtered_motor_friction(self.fitted_drive, log_samples, load)
         return (
             friction_torque,
             friction_torque + terms.design_matrix @ self.linear_unknowns + terms.measured_load_torque,
         )
 
-    def evaluate_tooth_load_and_deviations(self, log_samples: LogSamples) -> tuple[Array, Array]:
-        """Load (n) [N.m] of the teeth at samples, and its standard deviations as changes (m, n) [N.m].
+    def evaluate_transmitted_torque_and_deviations(self, log_samples: LogSamples) -> tuple[Array, Array]:
+        """Torque (n) [N.m] transmitted by the teeth; its standard deviations as changes (m, n) [N.m].
 
         Each change follows from one of m independent errors of one standard deviation: the principal
         directions of the covariance of the linear unknowns, then the rotor inertia.
         """
         ratio = abs(self.fitted_drive.ratio)
         terms = LinearTorqueTerms.evaluate_at_samples(log_samples, ratio)
-        load = terms.tooth_load(log_samples, self.linear_unknowns, ratio, self.rotor_inertia)
+        load = terms.evaluate_transmitted_torque(log_samples, self.linear_unknowns, ratio, self.rotor_inertia)
         variances, directions = np.linalg.eigh(self.linear_unknown_covariance)
         ends = self.linear_unknowns + np.sqrt(np.maximum(variances, 0.0))[:, None] * directions.T
         cases = [
             *((end, self.rotor_inertia) for end in ends),
             (self.linear_unknowns, self.rotor_inertia + self.rotor_inertia_deviation),
         ]
-        changes = [terms.tooth_load(log_samples, end, ratio, rotor) - load for end, rotor in cases]
+        changes = [
+            terms.evaluate_transmitted_torque(log_samples, end, ratio, rotor) - load for end, rotor in cases
+        ]
         return load, np.reshape(changes, (len(changes), load.size))
 
     def no_load_friction(self, joint_speed: Array, temperature: float) -> Array:
@@ -252,7 +255,7 @@ def select_friction_parameters(
         return list(fitted_names), []
     reasons: dict[str, str] = {}
     terms, linear = _fit_linear_model(log_samples, drive_parameters)
-    load = terms.tooth_load(
+    load = terms.evaluate_transmitted_torque(
         log_samples, linear[2:], abs(drive_parameters.ratio), rotor_inertia
     )  # with constant dry and viscous friction
     if np.max(np.abs(load)) < MIN_LOAD_OVER_RATED_TORQUE * drive_parameters.rated_torque:
@@ -340,7 +343,7 @@ def _fit_with_iterated_load(
     rotor_inertia: float,
     residual_noise: float | None = None,
 ) -> FittedLogFriction:
-    """Fit friction, inertia, offset and gravity repeatedly: each fit takes the tooth load of the fit before.
+    """Fit friction, inertia, offset and gravity in rounds, with the load of the teeth from the round before.
 
     start_file      : parameter file with the start values
     value_bounds    : {name: lower and upper bound}
@@ -349,16 +352,16 @@ def _fit_with_iterated_load(
     """
     ratio, linear, changed = abs(parameter_file.values.ratio), linear_unknowns, start_file
     terms = LinearTorqueTerms.evaluate_at_samples(log_samples, ratio)
-    load = terms.tooth_load(log_samples, linear, ratio, rotor_inertia)
+    load = terms.evaluate_transmitted_torque(log_samples, linear, ratio, rotor_inertia)
     for _ in range(LOAD_ITERATION_COUNT):
 
-        def net_torque(parameter_values: Mapping[str, float], tooth_load: Array = load) -> Array:
+        def net_torque(parameter_values: Mapping[str, float], transmitted_torque: Array = load) -> Array:
             """Motor torque [N.m] at n samples minus friction and measured load (joint sensor or gravity)."""
             drive = parameter_file.with_values(parameter_values, "calibration", "fit").values
             return np.asarray(
                 log_samples.motor_torque
                 - terms.measured_load_torque
-                - filtered_motor_friction(drive, log_samples, tooth_load)
+                - filtered_motor_friction(drive, log_samples, transmitted_torque)
             )
 
         def residuals(parameter_values: Mapping[str, float], net_torque_function=net_torque) -> Array:  # type: ignore[no-untyped-def]
@@ -376,7 +379,7 @@ def _fit_with_iterated_load(
         residual_noise = float(np.sqrt(solution.residuals @ solution.residuals / degrees_of_freedom))
         linear = terms.solve_linear_unknowns(net_torque(solution.values))
         changed = parameter_file.with_values(solution.values, "calibration", "fit")
-        previous, load = load, terms.tooth_load(log_samples, linear, ratio, rotor_inertia)
+        previous, load = load, terms.evaluate_transmitted_torque(log_samples, linear, ratio, rotor_inertia)
         if np.max(np.abs(load - previous)) <= RELATIVE_LOAD_TOLERANCE * np.max(np.abs(load)):
             break
     assert residual_noise is not None

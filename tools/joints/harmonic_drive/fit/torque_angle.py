@@ -40,7 +40,12 @@ MAX_CREATED_ENERGY_OVER_TORQUE_ANGLE_RANGE = 0.01
 
 @dataclass(frozen=True, slots=True)
 class MeasuredTorqueAngleCurve:
-    """Measured torque-angle curve: file, midline (curve without hysteresis), scaled start parameters."""
+    """Measured torque-angle curve, and the parameters at which a fit to it starts.
+
+    data_path  : measured file
+    midline    : torque-angle curve without hysteresis
+    start_file : start parameters; a stated rated torque scales max_torque and torque_smoothing
+    """
 
     data_path: Path
     midline: backbone.Backbone
@@ -117,7 +122,7 @@ def fit(
 def read_torque_angle_curve(
     data_path: str | Path, start_parameters: ParameterFile | None, rated_torque: float | None
 ) -> MeasuredTorqueAngleCurve:
-    """Read a measured curve: midline (without hysteresis), and start parameters scaled to its stiffness.
+    """Read a measured curve: midline (without hysteresis), start parameters at the rated torque [N.m].
 
     Raises ValueError for a bad file, unit or shape of the curve, or a torque above max_torque of the law.
     """
@@ -128,7 +133,7 @@ def read_torque_angle_curve(
     except ValueError as error:
         raise ValueError(f"{table.table_path}: {error}") from None
     start_file = start_parameters or load_default("harmonic_drive")
-    file = _change_rated_torque_of_start_drive(start_file, line.torque, rated_torque, table.table_path)
+    file = _scale_start_drive_to_rated_torque(start_file, line.torque, rated_torque, table.table_path)
     _check_wind_up_and_loop_energy(line, file, table)
     size = start_file.values.rated_torque / file.values.rated_torque
     expected = float(np.ptp(drive.compute_wind_up(start_file.values, size * line.torque)))
@@ -174,11 +179,12 @@ def make_fit_result(
     )
 
 
-def _change_rated_torque_of_start_drive(
+def _scale_start_drive_to_rated_torque(
     start_file: ParameterFile, measured_torques: Array, rated_torque: float | None, data_path: Path
 ) -> ParameterFile:
-    """Change the start parameters to a drive of the stated rated torque [N.m].
+    """Scale the start parameters to a rated torque [N.m]: max_torque and torque_smoothing in proportion.
 
+    rated_torque : None: the start parameters stay as they are
     Raises InputRefusal if the measured torque (n) [N.m] exceeds max_torque of the law.
     """
     drive_, reach = start_file.values, float(np.max(np.abs(measured_torques)))
