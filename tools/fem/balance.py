@@ -87,7 +87,7 @@ class RigidBodyBalance:
         )
 
     def check_loads(self) -> None:
-        """Raise RuntimeError if contact without tension cannot balance the loads, or no load closes it."""
+        """Raise RuntimeError if contact without tension cannot balance the loads, or no load presses it."""
         if not _has_independent_columns(self.unsupported_motion_approach):
             raise RuntimeError("a body can move rigidly: supports and contact do not hold it")
         if self.generalised_load.size == 0:

@@ -45,7 +45,8 @@ class ContactEnergy:
 
         u K u / 2 - f u + sum over the quadrature points of area times V(offset + T u).
 
-    V [J/m2] is the energy of the interface per area; its derivative is the pressure p.
+    V [J/m2] is the energy of the interface per area; its derivative is the pressure p. The offset (q) [m] is
+    the approach without displacement.
 
     stiffness_matrix : K (n, n) [N/m]
     load_vector      : f (n) [N]

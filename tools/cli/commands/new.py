@@ -194,7 +194,7 @@ def add_catalogue_command(command_parsers: SubParsers) -> None:
 
 
 def _run_catalogue(args: argparse.Namespace) -> CommandResult:
-    """List the bought joints whose names contain the words. Raises ValueError if there is none."""
+    """List the drives of the catalogue whose names contain the words. Raises ValueError if there is none."""
     found = [item for item in list_drives() if _name_contains_words(args.words, item.joint_name)]
     if not found:
         word = " ".join(args.words)

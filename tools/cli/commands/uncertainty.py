@@ -156,7 +156,7 @@ def _read_sample_count(args: argparse.Namespace, default_sample_count: int) -> i
 
 
 def _create_run_executor(args: argparse.Namespace) -> "StudyExecution":
-    """State from the options where the runs of a study are executed: local processes, or a dask cluster."""
+    """Make the object that executes the runs of a study: in local processes, or on a dask cluster."""
     from ...studies.uncertainty.runs import StudyExecution
 
     if args.workers is not None and args.workers < 1:

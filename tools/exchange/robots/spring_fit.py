@@ -90,7 +90,7 @@ def fit_spring(drive: Transmission, max_torque: float) -> FittedSpring:
 
 
 def loop_half_width(wind_up: Array, torque: Array) -> Array:
-    """Half the distance (n) between the branches of a loop, at n wind-ups between its ends."""
+    """Half the torque difference (n) [N.m] of the branches of a loop, at n wind-ups between its ends."""
     back = slice(RAMP_POINT_COUNT, RAMP_POINT_COUNT + LOOP_POINT_COUNT // 2 + 1)
     forth = slice(RAMP_POINT_COUNT + LOOP_POINT_COUNT // 2, None)
     x = np.linspace(wind_up[back].min(), wind_up[back].max(), RAMP_POINT_COUNT)

@@ -178,7 +178,8 @@ def resolve_interval_setting(
 ) -> object:
     """Replace the setting "interval" of a parameter by the text LOW..HIGH; return other settings unchanged.
 
-    LOW and HIGH are the range of the parameter in the file, else the interval in the text of its source.
+    LOW and HIGH are the range of the parameter in the file. Without a range, they are read from the text that
+    states the source of the value in the file.
 
     Raises ValueError if the file states neither.
     """

@@ -231,7 +231,7 @@ def directional_stiffness(friction_tangent: Array, motion_direction: Array) -> A
 
 
 def continued_motion_stiffness(patches: FrictionPatches, friction_update: FrictionUpdate) -> list[float]:
-    """Tangent stiffness per area [Pa/m], [Pa.m] of the friction if s_x, s_y or the rotation theta_z goes on.
+    """Tangent stiffness per area of the friction for s_x, s_y [Pa/m] and the rotation theta_z [Pa.m].
 
     In the direction of the traction of their patch, sliders at their limits continue to slip; in the opposite
     direction they stick. Each component is the smaller one of the stiffnesses in both directions.
