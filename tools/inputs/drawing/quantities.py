@@ -14,7 +14,7 @@ from typing import NamedTuple
 from jointfmu.quantity.units import conversion_factor
 
 from ...common.options import format_option_flag
-from .reading import NUMBER_WITH_UNIT_PATTERN, check_no_comma
+from .reading import NUMBER_WITH_UNIT_PATTERN, check_no_comma, split_number_texts
 
 _RANGE_PATTERN = re.compile(r"(.+?)\s*\.\.\s*(.+)")
 """Pattern of a range LOW..HIGH."""
@@ -305,13 +305,7 @@ def parse_quantity_values(
 
     Raises ValueError for another count, and as `parse_quantity_value`.
     """
-    words = option_text.split(number_separator)
-    if len(words) != expected_value_count:
-        example = number_separator.join(["200", "100"][:expected_value_count])
-        raise ValueError(
-            f"{format_option_flag(option_name)} = {option_text!r} has {len(words)} numbers, expected "
-            f"{expected_value_count}, as in {example}"
-        )
+    words = split_number_texts(option_name, option_text, number_separator, expected_value_count)
     return [parse_quantity_value(option_name, word) for word in words]
 
 

@@ -101,6 +101,14 @@ def parse_numbers(
 
     Raises ValueError for another count, and as `parse_number`.
     """
+    words = split_number_texts(option_name, numbers_text, number_separator, expected_number_count)
+    return [parse_number(option_name, word, default_unit, result_unit, lower_bound) for word in words]
+
+
+def split_number_texts(
+    option_name: str, numbers_text: str, number_separator: str, expected_number_count: int
+) -> list[str]:
+    """Split the text of an option at the separator of its numbers. Raises ValueError for another count."""
     words = numbers_text.split(number_separator)
     if len(words) != expected_number_count:
         example = number_separator.join(["200", "100"][:expected_number_count])
@@ -108,7 +116,7 @@ def parse_numbers(
             f"{format_option_flag(option_name)} = {numbers_text!r} has {len(words)} numbers, "
             f"expected {expected_number_count}, as in {example}"
         )
-    return [parse_number(option_name, word, default_unit, result_unit, lower_bound) for word in words]
+    return words
 
 
 def expand_to_sides(option_name: str, side_texts: Sequence[str] | None) -> tuple[str, str] | None:
