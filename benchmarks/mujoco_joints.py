@@ -171,7 +171,7 @@ TARGETS = {"plain": 1.5, "plain, no friction": 1.5, "plugin": 2.5}
 
 
 def make_arm_models(folder: Path, hysteresis: float | None) -> dict[str, mujoco.MjModel]:
-    """Arm models: rigid, elastic in plain MJCF, elastic with the plugin."""
+    """Make MuJoCo models of a robot arm: rigid, with elastic drives in plain MJCF, and with the plugin."""
     spec = elastic.read_robot(ROBOT)
     spec.option.timestep = STEP
     spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_EULERDAMP

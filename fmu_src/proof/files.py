@@ -144,7 +144,7 @@ def make_reference_files(
 def place_reference_files(
     reference_files: Mapping[str, bytes], manifest_entries: Sequence[ManifestEntry], explaining_text: str
 ) -> dict[str, bytes]:
-    """Add manifest and explaining text to reference files: {path in the FMU: content}."""
+    """Collect reference files, their manifest and a text that explains them: {path in the FMU: content}."""
     files = {**reference_files, "fmi-ls-manifest.xml": _format_manifest(manifest_entries)}
     return {f"{standard.REFERENCE_FILE_FOLDER}/{path}": content for path, content in files.items()} | {
         EXPERIMENT_TEXT_PATH: explaining_text.encode()

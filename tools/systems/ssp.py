@@ -137,7 +137,7 @@ def make_ssp_attributes() -> dict[str, str]:
 
 
 def _add_parameter_binding(xml_element: Element, parameter_set_name: str) -> None:
-    """Bind the parameter set `parameters/NAME.ssv` to a system or component."""
+    """Add to the XML element of a system or component that it takes its values from `parameters/NAME.ssv`."""
     bindings = SubElement(xml_element, "ssd:ParameterBindings")
     SubElement(bindings, "ssd:ParameterBinding", source=f"parameters/{parameter_set_name}.ssv")
 
@@ -302,7 +302,7 @@ def _make_archive_path(system: System, out_folder: Path, ssp_version: str, maste
 
 
 def _write_archive(system: System, out_folder: Path, ssp_version: str, master_kind: MasterKind) -> Path:
-    """Write the archive of a system for one SSP version and one kind of master."""
+    """Write the SSP archive of a system for an SSP version and a sequential or parallel master."""
     lag_parameters, names = find_lag_parameters(system), find_fmu_names(system)
     members = {"SystemStructure.ssd": format_system_structure(system, names, ssp_version, master_kind)}
     system_values: dict[str, ParameterValue] = {}

@@ -214,7 +214,7 @@ _NUMBER_BYTES_PATTERN = re.compile(rb"\d+")
 
 
 def check_surface_file(scan_path: Path) -> None:
-    """Raise ValueError (one line) if a file is no surface, by its first bytes or by too few numbers."""
+    """Raise ValueError if a file has the first bytes of another format, or too few numbers for a scan."""
     with scan_path.open("rb") as file:
         start = file.read(64)
     if kind := next(

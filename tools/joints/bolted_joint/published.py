@@ -46,12 +46,12 @@ def bolt_row_force(joint_parameters: BoltedJointParameters, preload: float, mome
 
 
 def critical_area(joint_parameters: BoltedJointParameters, choice: str) -> float:
-    """Critical area [m2] of a contact spot by the equation `choice`: smaller spots are plastic."""
+    """Area [m2] of a contact spot below which it is plastic, by the equation that `choice` selects."""
     return float(zhao.critical_area(replace(joint_parameters, critical_area=choice)))
 
 
 def spot_stiffness_ratio(joint_parameters: BoltedJointParameters) -> float:
-    """Normal stiffness of a contact spot by the equation `family` over that by the equation `hertz` [1]."""
+    """Ratio [1] of the normal stiffnesses of a contact spot by the equations `family` and `hertz`."""
     family, hertz = (
         zhao.normal_stiffness(replace(joint_parameters, spot_stiffness=kind), 1e-6)
         for kind in ("family", "hertz")

@@ -150,7 +150,7 @@ def _find_relative_tolerance(experiment: Experiment) -> float:
 
 
 def _insert_corner_times(communication_points: Array, corner_times: Array) -> Array:
-    """Add the times [s] at which inputs have a corner to communication points [s], without equal times."""
+    """Communication points [s] and the times [s] at which inputs have a kink, sorted, each time once."""
     equal = TIME_TOLERANCE_OVER_STEP * float(np.min(np.diff(communication_points)))
     inner = np.unique(
         corner_times[
