@@ -38,8 +38,11 @@ def add_command(command_parsers: SubParsers) -> None:
         help="kinds of FMU to build: fmi2, fmi3 (compiled; default: both), python (FMI 2.0, runs Python "
         "code)",
     )
-    text = "model name, identifier and file name of one FMU, for example ShoulderDrive; FMUs with different "
-    declare_argument(make, "--name", str, text + "names can be used in one model")
+    text = (
+        "model name, identifier and file name of one FMU, for example ShoulderDrive; FMUs with different "
+        "names can be used in one model"
+    )
+    declare_argument(make, "--name", str, text)
     declare_argument(
         make, "--params", Path, "parameter file of one joint, in place of its default parameters (TOML)"
     )

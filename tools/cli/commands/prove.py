@@ -33,9 +33,9 @@ def add_command(command_parsers: SubParsers) -> None:
     declare_output(sub, "--listing", OUTPUT_FOLDER, text)
     text = (
         "check the FMU against start values and results computed from this parameter file (TOML), not "
-        "against those in "
+        "against those in the FMU"
     )
-    declare_argument(sub, "--against", Path, text + "the FMU")
+    declare_argument(sub, "--against", Path, text)
 
 
 def _run_prove(args: argparse.Namespace) -> CommandResult:

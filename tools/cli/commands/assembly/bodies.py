@@ -54,9 +54,9 @@ def declare_body_arguments(parser: argparse.ArgumentParser) -> None:
     )
     text = (
         "for --thickness: outer diameter of head or washer [mm] (default: from --params, else the hexagon "
-        "head of the "
+        "head of the largest bolt that passes the hole)"
     )
-    declare_argument(parser, "--head", str, text + "largest bolt that passes the hole)", "D")
+    declare_argument(parser, "--head", str, text, "D")
 
 
 def check_body_arguments(args: argparse.Namespace, parameter_file: ParameterFile) -> None:

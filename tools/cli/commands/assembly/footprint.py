@@ -96,9 +96,9 @@ def _declare_import(subcommand_parsers: SubParsers) -> None:
     step.add_argument("--with", dest="beside", nargs="+", type=Path, default=[], metavar="FILE", help=text)
     text = (
         "largest allowed difference of contact force and bolt force, divided by the bolt force [1]; the "
-        "pressures are scaled to the "
+        "pressures are scaled to the bolt force (default: 0.01)"
     )
-    declare_argument(step, "--force-tolerance", float, text + "bolt force (default: 0.01)", "P")
+    declare_argument(step, "--force-tolerance", float, text, "P")
     declare_argument(
         step, "--moment", float, "bending moment about x in the result of --moment-file [N.m]", "M"
     )

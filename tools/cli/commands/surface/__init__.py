@@ -95,8 +95,11 @@ def add_command(command_parsers: SubParsers) -> None:
         "with a power law)"
     )
     find.add_argument("--range", dest="span", nargs=2, type=float, metavar=("LOW", "HIGH"), help=text)
-    text = "longest wavelength that counts for the rms height h [m] (default: the length of a profile, the "
-    declare_argument(find, "--longest-wave", float, text + "shorter side of a map)", "L")
+    text = (
+        "longest wavelength that counts for the rms height h [m] (default: the length of a profile, the "
+        "shorter side of a map)"
+    )
+    declare_argument(find, "--longest-wave", float, text, "L")
     text = (
         "side of the contact that a single file describes: 1 or 2 (the other side is smooth), or both "
         "(equal sides)"
