@@ -174,7 +174,7 @@ class Model:
     name: str
     joint: str
     doc: str
-    parameter_class: type[object]
+    parameter_class: type[Any]
     tabulate: Callable[..., TabulatedJoint]
     inputs: Sequence[Variable]
     outputs: Sequence[Variable]
