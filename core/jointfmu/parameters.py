@@ -144,10 +144,12 @@ class ParameterFile:
     def with_roughness(
         self, surface_heights: Mapping[str, float], height_origin: str, height_source: str
     ) -> "ParameterFile":
-        """Copy of the file with new heights [m] of the surfaces, {name: height}.
+        """Copy of the file with new roughness heights [m] of the two surfaces, {name: height}: Ra, Rq or Sq.
 
-        Earlier heights of the same side are removed. A law with the parameter h gets h computed from all
-        heights. Raises ValueError as `roughness.check_heights` does.
+        Roughness heights that the file has for the same surface are removed. If the law has the parameter h
+        (combined roughness height of both surfaces), h is computed from the roughness heights.
+
+        Raises ValueError as `roughness.check_heights` does.
         """
         new_heights = roughness.check_heights(surface_heights, self.heights_prefix)
         replaced = {other for name in new_heights for other in roughness.find_conflicting_height_names(name)}

@@ -9,7 +9,12 @@ from hypothesis import strategies as st
 from oracles.elastic_ring.nodes import Footprint
 
 from jointfmu.joints.bolted_joint.law import preload_pressure, row_forces
-from jointfmu.mechanics.footprint.bolts import BoltedFrame, bolt_pressures, frame_cells, pressure_distribution
+from jointfmu.mechanics.footprint.bolts import (
+    BoltedFrame,
+    bolt_pressures,
+    divide_frame_into_cells,
+    pressure_distribution,
+)
 from jointfmu.mechanics.footprint.distribution import PRESSURE_COMPARISON_DECIMALS
 from jointfmu.parameters import load_default
 from jointfmu.quantity import flatten_parameters
@@ -40,7 +45,7 @@ patterns = st.builds(
 @given(pattern=patterns)
 def test_force_is_conserved(pattern):
     """1 N in a bolt gives 1 N in the contact, for each bolt and for all together."""
-    areas, points = frame_cells(pattern)
+    areas, points = divide_frame_into_cells(pattern)
     np.testing.assert_allclose(bolt_pressures(pattern, areas, points, points) @ areas, 1.0, rtol=SUM)
     shape = pressure_distribution(pattern)
     assert shape.area_share.sum() == pytest.approx(1.0, rel=SUM)
@@ -52,7 +57,7 @@ def test_force_is_conserved(pattern):
 def test_cells_fill_the_frame():
     """Their area is that of the frame without holes, and they lie in its solid part."""
     pattern = JOINT.pattern
-    areas, points = frame_cells(pattern)
+    areas, points = divide_frame_into_cells(pattern)
     width = pattern.flange_width
     outer = (pattern.column_spacing + width) * (pattern.row_spacing + width)
     inner = (pattern.column_spacing - width) * (pattern.row_spacing - width)
@@ -106,7 +111,7 @@ def test_pressure_decays_with_the_distance(pattern, r, further):
 
 
 def test_pressure_of_one_bolt_falls_outwards():
-    areas, points = frame_cells(JOINT.pattern)
+    areas, points = divide_frame_into_cells(JOINT.pattern)
     for bolt, unit in zip(
         JOINT.pattern.bolt_positions_from_middle,
         bolt_pressures(JOINT.pattern, areas, points, points),
@@ -122,7 +127,7 @@ def test_pressures_are_those_of_the_bolt_forces(preload, moment):
     shift = moment / (JOINT.row_distance * 3)
     forces = preload + shift * np.array([1, 1, 1, 0, 0, -1, -1, -1])
     assert row_forces(JOINT, preload, moment) == pytest.approx((forces[0], forces[-1]), rel=1e-15)
-    areas, points = frame_cells(JOINT.pattern)
+    areas, points = divide_frame_into_cells(JOINT.pattern)
     expected = forces @ bolt_pressures(JOINT.pattern, areas, points, points) * areas.sum() / JOINT.A_0
     shape = pressure_distribution(JOINT.pattern)
     found = preload_pressure(JOINT, shape, preload, moment)
@@ -143,7 +148,7 @@ def test_published_pressures():
     assert np.max(p) == pytest.approx(7.98e6, rel=FIT)
     rim = np.min(np.hypot(*(shape.position[np.argmax(p)] - JOINT.pattern.bolt_positions_from_middle).T))
     assert rim < 0.5 * JOINT.pattern.hole_diameter + JOINT.pattern.flange_width / 7  # within one cell
-    areas, points = frame_cells(JOINT.pattern)
+    areas, points = divide_frame_into_cells(JOINT.pattern)
     between = 0.5 * (
         JOINT.pattern.bolt_positions_from_middle[0] + JOINT.pattern.bolt_positions_from_middle[3]
     )

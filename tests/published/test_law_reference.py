@@ -60,14 +60,14 @@ NONE = (("yu2022", "tangential"), ("table", "area"))
 def moved(law, quantity):
     """Class of a law, name of its method, and the method with a quantity 1 % larger."""
     cls = MIDLINES[law] if quantity == "midline" else LAWS[law]
-    name = {"midline": "make_midline_spline_nodes"}.get(quantity, "spot_distribution")
+    name = {"midline": "make_midline_nodes"}.get(quantity, "spot_distribution")
     name = "real_area" if (law, quantity) == ("roughness", "area") else name
     own = getattr(cls, name)
     return (
         cls,
         name,
         {
-            "make_midline_spline_nodes": lambda self: [
+            "make_midline_nodes": lambda self: [
                 n._replace(torque=1.01 * n.torque, stiffness=1.01 * n.stiffness) for n in own(self)
             ],
             "real_area": lambda self, p: (1.01 * own(self, p)[0], own(self, p)[1]),

@@ -150,7 +150,9 @@ class ContactModel:
         return ContactEnergy(
             stiffness_matrix=blocks[0] if self.is_mirrored else sp.block_diag(blocks, format="csr"),
             load_vector=np.zeros(sum(free.size for free in self._free_unknowns)),
-            approach_matrix=(self.contact_interface.interpolation_matrix @ sp.hstack(traces)).tocsr(),
+            displacement_to_approach_matrix=(
+                self.contact_interface.interpolation_matrix @ sp.hstack(traces)
+            ).tocsr(),
             quadrature_area=self.contact_interface.quadrature_area * (0.5 if self.is_mirrored else 1.0),
             pressure_law=self.pressure_law.derivatives,
         )

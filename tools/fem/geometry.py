@@ -270,7 +270,10 @@ class Assembly:
         return force
 
     def max_moment(self, preload: float) -> float:
-        """Moment [N.m] at which an outer row of bolts loses its force; 0 without two matching rows."""
+        """Moment [N.m] that cancels the preload in an outer row of bolts, if only the outer rows carry it.
+
+        It is 0 if the two outer rows do not have the same number of bolts.
+        """
         rows = self.find_outer_rows()
         return 0.0 if rows is None else preload * self.row_distance * float(rows[0].sum())
 

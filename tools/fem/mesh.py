@@ -105,7 +105,7 @@ def mesh_plan_view(assembly: Assembly, refinement: float = 1.0) -> PlanMesh:
 
 
 def set_mesh_options() -> None:
-    """Set the options of gmsh for a plan of quadrilaterals."""
+    """Set the options of gmsh for a plane mesh of quadrilaterals."""
     import gmsh
 
     gmsh.option.setNumber("General.Terminal", 0)

@@ -50,14 +50,14 @@ class ContactEnergy:
 
     stiffness_matrix : K (n, n) [N/m]
     load_vector      : f (n) [N]
-    approach_matrix  : T (q, n) [1] approach at the quadrature points per displacement
+    displacement_to_approach_matrix  : T (q, n) [1] approach at the quadrature points per displacement
     quadrature_area  : area (q) [m2] of each quadrature point
     pressure_law     : function of the approach (q) [m]: pressure [Pa] and its derivative [Pa/m]
     """
 
     stiffness_matrix: sp.csr_matrix
     load_vector: Array
-    approach_matrix: sp.csr_matrix
+    displacement_to_approach_matrix: sp.csr_matrix
     quadrature_area: Array
     pressure_law: Callable[[Array], list[Array]]
 
@@ -75,7 +75,7 @@ class ContactEnergy:
 
         Raises RuntimeError if there is no equilibrium.
         """
-        K, T = self.stiffness_matrix, self.approach_matrix
+        K, T = self.stiffness_matrix, self.displacement_to_approach_matrix
         u = np.zeros(self.load_vector.size) if initial_minimum is None else initial_minimum.displacement
         inner, approach = K @ u, approach_offset + T @ u
         total_load = float(np.abs(self.load_vector).sum())
@@ -116,7 +116,8 @@ class ContactEnergy:
         """
         return np.asarray(
             self.stiffness_matrix @ displacement
-            + self.approach_matrix.T @ (contact_stiffness * (self.approach_matrix @ displacement))
+            + self.displacement_to_approach_matrix.T
+            @ (contact_stiffness * (self.displacement_to_approach_matrix @ displacement))
         )
 
     def _step_length(

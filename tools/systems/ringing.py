@@ -356,7 +356,7 @@ def _simulate_vibration(
 def _run_vibration(
     joint_slave: Slave, body_slave: Slave, working_point: WorkingPoint, joint_load: float, inertia: float
 ) -> FreeVibration:
-    """Simulate the free vibration of two running FMUs about a working point."""
+    """Simulate the free vibration of a body on a joint about a working point; each is a running FMU."""
     expected = float(np.sqrt(working_point.stiffness / inertia))
     stated = working_point.damping / (2.0 * inertia * expected)
     if not stated < MAX_DAMPING_RATIO:

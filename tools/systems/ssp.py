@@ -284,9 +284,10 @@ def _build_component_fmus(
 
 
 def write_system_archives(system: System, out_folder: Path) -> list[Path]:
-    """Write `out/ssp/NAME.ssp` (SSP 1.0) and `out/ssp2/NAME.ssp` (SSP 2.0) for each kind of master.
+    """Write archives of the system to `out/ssp` (SSP 1.0, FMI 2 FMUs) and `out/ssp2` (SSP 2.0, FMI 3 FMUs).
 
-    The archives contain the FMUs in `out/fmi2` and `out/fmi3`, and the parameters of the system.
+    Each folder gets one archive per kind of master, see MASTER_KINDS. The archives contain the FMUs and the
+    parameters of the system.
 
     Raises ValueError for invalid connections or an unwritable folder.
     """

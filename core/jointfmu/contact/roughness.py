@@ -50,9 +50,9 @@ def rms_height(Ra: Number) -> Number:
     return RQ_OVER_RA * Ra
 
 
-def combine_heights(rms_height1: Number, rms_height2: Number) -> Number:
+def combine_heights(first_rms_height: Number, second_rms_height: Number) -> Number:
     """Combine rms heights [m] of two statistically independent surfaces: rms height h [m] of their gap."""
-    return np.sqrt(rms_height1**2 + rms_height2**2)
+    return np.sqrt(first_rms_height**2 + second_rms_height**2)
 
 
 def predicted_stiffness(pressure: Number, h: Number) -> Number:

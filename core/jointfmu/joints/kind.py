@@ -117,7 +117,7 @@ class JointKind:
         return self.package.startswith(f"{__package__}.")
 
     def tabulate(self, parameter_set: object) -> object:
-        """Compute the load-displacement table of a parameter set: joint ready for evaluation."""
+        """Compute the load-displacement table of a parameter set; return the joint that evaluates it."""
         return self.models[0].tabulate(parameter_set)
 
     def default_file(self, law_name: str | None = None) -> Path:

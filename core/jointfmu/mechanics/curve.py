@@ -92,7 +92,7 @@ class Curve:
 
     @property
     def closing_end_pressure(self) -> float:
-        """Pressure at approach 0, where the closing of the contact ends, of a pressure-approach curve.
+        """Contact pressure [Pa] at approach 0, at which the closing phase of a pressure-approach curve ends.
 
         The law of rough contact begins there, with a pressure above 0. At negative approach, the table has
         a smooth transition from pressure 0 to this pressure.

@@ -104,13 +104,14 @@ def slider_heights(
 
 
 def heights_after_liftoff(slider_heights: Array, min_approach: ArrayLike) -> Array:
-    """Slider heights after partial lift-off: the first height above the smallest approach moves down to it.
+    """Grid of slider heights after partial lift-off, with a grid point at the smallest approach.
 
-    slider_heights : (..., h) [m] of h heights, see `slider_heights`
-    min_approach : (...) [m] smallest approach so far
+    slider_heights : (..., h) [m] grid of h heights, see `slider_heights`
+    min_approach   : (...) [m] smallest approach so far
 
-    Springs above min_approach have lifted off and have no force, so this height can be changed. Springs that
-    touch and lift off periodically are then in another height interval than springs that stay in contact.
+    A spring is in contact while the approach is above its height, so springs with heights above min_approach
+    have lifted off at least once. The first grid point above min_approach is moved down to min_approach. Each
+    interval of the grid then has either springs that lift off or springs that stay in contact, not both.
     """
     smallest = np.asarray(min_approach, dtype=np.float64)[..., None]
     is_below = slider_heights < smallest
@@ -654,7 +655,7 @@ def retention_and_stiffness(
     stiffness_integral: Number,
     is_small_approach_change: Number,
 ) -> tuple[Number, Number]:
-    """Fraction of the friction force retained [1], and secant stiffness [Pa/m], if the normal load changes.
+    """Fraction [1] of the friction force that remains when the normal load changes; secant stiffness [Pa/m].
 
     If the approach grows, springs come into contact without force: the force is retained. If it decreases,
     springs lift off and lose their force: it decreases in proportion to the stiffness.

@@ -130,7 +130,11 @@ def _add_shear_functions(c_function_set: CFunctionSet) -> None:
 
 
 def _add_full_stick_function(c_function_set: CFunctionSet) -> None:
-    """Add the C function of a patch in full stick: fraction of friction force retained, secant stiffness."""
+    """Generate the C function for a friction patch in full stick when its normal load changes.
+
+    It gives the fraction of the friction force that remains (below 1 if the load decreases) and the secant
+    stiffness during the change.
+    """
     stiff, now, falls = make_casadi_symbols("x", 3)
     doc = "whether the load decreases, stiffness at both ends -> fraction retained, secant stiffness"
     y = sliders.stick_retention(stiff, now, falls)

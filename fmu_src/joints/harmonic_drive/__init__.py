@@ -41,7 +41,7 @@ class MidlineDriveParameters(MeasuredDriveParameters):
         """Stiffness K_FTS [N.m/rad] of circular spline and flexspline, set to `max_stiffness`."""
         return self.max_stiffness
 
-    def make_midline_spline_nodes(self) -> list[SplineNode]:
+    def make_midline_nodes(self) -> list[SplineNode]:
         """Return an empty list: the C code reads the nodes of the midline from data.c."""
         return []
 
@@ -68,7 +68,7 @@ def _make_data_tables(harmonic_drive: DriveParameters) -> Mapping[str, DataTable
         return NO_DATA_TABLES
     return {
         "midline": DataTable(
-            np.array(harmonic_drive.make_midline_spline_nodes(), dtype=np.float64), MAX_TABLE_POINTS + 1
+            np.array(harmonic_drive.make_midline_nodes(), dtype=np.float64), MAX_TABLE_POINTS + 1
         )
     }
 

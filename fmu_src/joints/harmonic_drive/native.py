@@ -40,7 +40,7 @@ def _add_joint_c_functions(c_function_set: CFunctionSet, fmu_model: Model) -> No
             "midline_nodes",
             doc,
             [],
-            [number for node in drive.make_midline_spline_nodes() for number in node],
+            [number for node in drive.make_midline_nodes() for number in node],
         )
     elif isinstance(drive, ContactPairDriveParameters):
         (torque,) = make_casadi_symbols("x", 1)

@@ -240,7 +240,8 @@ class CellwiseJoint:
     def solve_forces(self, attachment_motion: Array) -> Array:
         """Solve for the forces (3 n + b) [N] at a motion (6) [m, rad] of side 2's attachment.
 
-        Newton's method may stop before it has converged: a state needs no exact equilibrium.
+        Newton's method may stop before it has converged: the result is one of the sampled states from which a
+        reduced basis is made, and these need no exact equilibrium.
         """
         prescribed = self.rigid_displacement @ attachment_motion
         g = np.zeros_like(prescribed)
@@ -312,17 +313,17 @@ class CellTangentStiffness:
         below = np.divide(self.tangential_coupling, along_x, out=np.zeros(n), where=along_x > 0.0)
         root[2 * n : 3 * n] = np.sqrt(np.maximum(self.diagonal_stiffness[2 * n : 3 * n] - below**2, 0.0))
 
-        def multiply_by_root(displacements: Array) -> Array:
+        def multiply_by_cholesky_factor(displacements: Array) -> Array:
             """Product of L^T and a matrix (3 n + b, ...); L: Cholesky factor of the tangent stiffness."""
             product = (root * displacements.T).T
             product[n : 2 * n] += (below * displacements[2 * n : 3 * n].T).T
             return product
 
-        spread = multiply_by_root(body_compliance)
-        system = multiply_by_root(spread.T)
+        spread = multiply_by_cholesky_factor(body_compliance)
+        system = multiply_by_cholesky_factor(spread.T)
         system[np.diag_indices(len(system))] += 1.0
         factor = cho_factor(system, overwrite_a=True, check_finite=False)
-        y = cho_solve(factor, multiply_by_root(right_side), overwrite_b=True, check_finite=False)
+        y = cho_solve(factor, multiply_by_cholesky_factor(right_side), overwrite_b=True, check_finite=False)
         return np.asarray(right_side - spread.T @ y)
 
 

@@ -323,7 +323,10 @@ class _PreservedSums:
         sampled_pressure_distribution: PressureDistribution,
         load_case_sums: ForceAndStiffnessSums,
     ) -> "_PreservedSums":
-        """Collect the sums that the selected nodes must reproduce, in the load cases at the start."""
+        """Collect the force and stiffness sums that the selected nodes must reproduce.
+
+        load_case_sums : sums over all nodes, in the load cases with which the selection begins
+        """
         scale = np.maximum(
             np.max(np.abs(evaluate_equilibrium_functions(rounded_pressure_distribution)), axis=0),
             np.finfo(float).tiny,

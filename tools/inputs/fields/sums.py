@@ -375,9 +375,9 @@ class ForceAndStiffnessFunctions:
 
 
 def nodes_per_group(node_count: int) -> int:
-    """Number of neighbouring nodes that form a group; the last group may have fewer.
+    """Number of neighbouring nodes in a group, so that there are at most MAX_NODE_GROUPS groups.
 
-    Sums are stored for each group, for at most MAX_NODE_GROUPS groups.
+    The last group may have fewer nodes. Forces and stiffnesses are summed over each group and stored.
     """
     return -(-node_count // MAX_NODE_GROUPS)
 

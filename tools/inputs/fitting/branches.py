@@ -35,7 +35,7 @@ MIN_COMMON_OVER_LONGER_MOTION_RANGE = 0.9
 RISING_OVER_BRANCH_FORCE_CHANGE = 0.9
 """Force change since the turning point over change of the whole branch [1], up to which a branch counts as
 rising. Beyond it a slipped branch is flat."""
-FLAT_END_OVER_MOTION_RANGE, MAX_FLAT_RISE_OVER_BRANCH_RISE = 0.3, 0.05
+FLAT_END_SHARE_OF_MOTION, MAX_FLAT_END_SHARE_OF_FORCE_CHANGE = 0.3, 0.05
 """Last part of a branch over its range of motion [1], and rise of the force over this part, relative to the
 force change of the branch [1], up to which the branch counts as slipping."""
 MIN_FLAT_SAMPLES = 3
@@ -153,13 +153,13 @@ class MeasuredLoops:
     def _flat_end_samples(self, branch_number: int) -> NDArray[np.bool_]:
         """Mask (n) of the samples of a branch on its flat end; all false if its end is not flat."""
         distance, change = self.branch_curve(branch_number)
-        end = distance >= (1.0 - FLAT_END_OVER_MOTION_RANGE) * np.max(distance)
+        end = distance >= (1.0 - FLAT_END_SHARE_OF_MOTION) * np.max(distance)
         if np.count_nonzero(end) < MIN_FLAT_SAMPLES:
             return np.zeros_like(end)
         slope = float(np.polyfit(distance[end], change[end], 1)[0])
-        is_flat = abs(slope) * FLAT_END_OVER_MOTION_RANGE * np.max(
+        is_flat = abs(slope) * FLAT_END_SHARE_OF_MOTION * np.max(
             distance
-        ) < MAX_FLAT_RISE_OVER_BRANCH_RISE * np.max(change)
+        ) < MAX_FLAT_END_SHARE_OF_FORCE_CHANGE * np.max(change)
         return np.asarray(end & is_flat)
 
     def find_slip_steps(self) -> list["SlipStep"]:

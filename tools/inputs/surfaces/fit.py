@@ -121,7 +121,8 @@ def fit_self_affine_law(
 def _fit_longest_self_affine_range(scale_series: ScaleSeries) -> SelfAffineLaw:
     """Fit the self-affine law over the longest range in which it holds.
 
-    If it holds over no range: fit over the range with the smallest sum of drift and deviation.
+    If it holds over no range, use the range with the smallest sum of two numbers: change of the fractal
+    dimension over the range, and `excess_deviation`.
     """
     n = scale_series.lag_or_wavelength.size
     step = max(1, n // 10)

@@ -153,7 +153,10 @@ class SurfaceIdentification:
 
     @property
     def is_gaussian(self) -> bool:
-        """Whether the upper tail agrees with Gaussian heights; also true if parts of the scan disagree."""
+        """Whether the upper tail of the heights can be that of a Gaussian surface.
+
+        False only if the tails of the whole scan and of all its parts deviate in the same direction.
+        """
         ratios = [self.tail_over_rms_height, *map(tail_over_rms_height, self.gap_part_samples)]
         return not (
             max(ratios) < 1.0 / MAX_GAUSSIAN_TAIL_OVER_RMS_HEIGHT

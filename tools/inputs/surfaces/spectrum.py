@@ -317,9 +317,10 @@ def _line_fourier_modes(z: Array, point_spacing: float) -> tuple[Array, Array, A
 
 
 def _areal_fourier_modes(z: Array, dx: float, dy: float) -> tuple[Array, Array, Array, float]:
-    """Fourier modes of a map in half of the frequency plane.
+    """Power of the Fourier modes of a height map, in half of the frequency plane.
 
-    Returns their frequency f [1/m], variance [m2], share df_x df_y/(pi f^2) [1], and max(dx, dy) [m].
+    Returns frequency f [1/m] and height variance [m2] of each mode, the share df_x df_y/(pi f^2) [1] of each
+    mode in a ring of the frequency plane, and the larger spacing max(dx, dy) [m].
     """
     ny, nx = z.shape
     window = np.multiply.outer(_hann_window(ny), _hann_window(nx))

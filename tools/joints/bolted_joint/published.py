@@ -13,7 +13,7 @@ from jointfmu.joints.bolted_joint.law import (
     preload_pressure,
     row_forces,
 )
-from jointfmu.mechanics.footprint.bolts import bolt_pressures, frame_cells, pressure_distribution
+from jointfmu.mechanics.footprint.bolts import bolt_pressures, divide_frame_into_cells, pressure_distribution
 
 from ...inputs.fractal import rms_height
 from ...studies.published.computed import CalibrationFit, PublishedNumbers
@@ -34,7 +34,7 @@ def pressure_between_bolts(joint_parameters: BoltedJointParameters, preload: flo
     preload : [N] per bolt
     """
     pattern = get_bolted_frame(joint_parameters)
-    areas, nodes = frame_cells(pattern)
+    areas, nodes = divide_frame_into_cells(pattern)
     middle = pattern.bolt_positions_from_middle[[0, 3]].mean(axis=0)[None, :]
     unit = float(bolt_pressures(pattern, areas, nodes, middle).sum())
     return unit * preload * joint_parameters.n_bolts / 8.0 * float(areas.sum()) / joint_parameters.A_0

@@ -39,7 +39,7 @@ def run_on_cluster(
                 f"{scheduler_address}: has had no worker for 60 s; start dask workers for this scheduler"
             ) from None
         key = f"jointfmu-{uuid4()}"
-        client.register_plugin(EvaluatorPlugin(key, run_evaluator.include_files()), name=key)
+        client.register_plugin(EvaluatorPlugin(key, run_evaluator.embed_files()), name=key)
         try:
             yield from _submit_jobs(client, key, jobs)
         finally:

@@ -50,7 +50,7 @@ class RampEvaluator(Protocol):
     @property
     def runs_per_process(self) -> int: ...
 
-    def include_files(self) -> "RampEvaluator":
+    def embed_files(self) -> "RampEvaluator":
         """Copy of the evaluator that contains its files, to be sent to another machine."""
 
     def install_files(self, target_folder: Path) -> "RampEvaluator":
@@ -110,7 +110,7 @@ class FmuRampEvaluator:
     load_ramp: LoadRamp
     fmu_content: bytes | None = None
 
-    def include_files(self) -> "FmuRampEvaluator":
+    def embed_files(self) -> "FmuRampEvaluator":
         """Copy of the evaluator with the bytes of its FMU."""
         return replace(self, fmu_content=self.fmu_path.read_bytes())
 
@@ -198,10 +198,10 @@ class JointRampEvaluator:
 
     @property
     def load_curves(self) -> LoadCurves:
-        """Quantities of the joint along the load ramp."""
+        """What a study computes along a load ramp for this kind of joint."""
         return find_load_curves(KINDS[self.parameter_file.joint])
 
-    def include_files(self) -> "JointRampEvaluator":
+    def embed_files(self) -> "JointRampEvaluator":
         """Return this evaluator unchanged: it needs no files (the evaluator of an FMU packs the FMU)."""
         return self
 
@@ -221,7 +221,7 @@ class JointRampEvaluator:
         return {"run": run_number, "parameters": dict(run_settings), "columns": columns}
 
     def evaluate_sample(self, run_settings: Settings) -> dict[str, Array]:
-        """Loads and all quantities of a sample of the joint, at the loads that are evaluated.
+        """Return the ramped load and all quantities of one sample of the joint, {name: (n)}, at n loads.
 
         Raises ValueError, one line, if the law refuses the sample.
         """

@@ -41,9 +41,12 @@ def format_fitted_system(
 
 
 def read_document_with_sections(system_path: Path, parameter_names: Iterable[str]) -> dict[str, Any]:
-    """Read the document of a system file, which must have a section for each COMPONENT.PARAMETER.
+    """Read a system file (TOML) and check that the components of the given parameters have sections in it.
 
-    Raises ValueError for a component without its own section: those that a section [arm] makes.
+    parameter_names : names COMPONENT.PARAMETER
+
+    Raises ValueError for a component without its own section, for example a link of a robot arm: the file
+    declares all links in the one section [arm].
     """
     document = read_document(system_path, "a system's file")
     for name in parameter_names:

@@ -47,19 +47,19 @@ class _ComponentCode(NamedTuple):
     """C source code of a component of a system; components with the same code share it.
 
     text_by_file_name : {file name: text} of all files except data.c
-    data_c_texts      : texts of data.c of the components that share the files
+    data_source_texts      : texts of data.c of the components that share the files
     has_fixed_data    : whether the files read the object `data`; otherwise the data are only the argument
         `joint_data` of `joint_tabulate`, and components with other data share the files
     """
 
     text_by_file_name: dict[str, str]
-    data_c_texts: list[str]
+    data_source_texts: list[str]
     has_fixed_data: bool
 
     def is_shared_with(self, other_code: "_ComponentCode") -> bool:
         """Whether this code can also be used for the component that `other_code` was generated for."""
         return self.text_by_file_name == other_code.text_by_file_name and (
-            not self.has_fixed_data or self.data_c_texts == other_code.data_c_texts
+            not self.has_fixed_data or self.data_source_texts == other_code.data_source_texts
         )
 
 
@@ -75,11 +75,11 @@ def generate_sources(system_model: SystemModel) -> dict[str, str]:
             candidates = (_append_index_to_name(component.fmu_model.name, k) + "_" for k in count())
             prefix = next(p for p in candidates if p not in code_by_prefix)
             code_by_prefix[prefix] = code
-        known_sources = code_by_prefix[prefix].data_c_texts
-        if code.data_c_texts[0] not in known_sources:
-            known_sources += code.data_c_texts
+        known_sources = code_by_prefix[prefix].data_source_texts
+        if code.data_source_texts[0] not in known_sources:
+            known_sources += code.data_source_texts
         prefixes[component.name] = prefix
-        index = known_sources.index(code.data_c_texts[0])
+        index = known_sources.index(code.data_source_texts[0])
         data_names[component.name] = prefix + _append_index_to_name("data", index)
     files = {
         path.name: path.read_text(encoding="utf-8")
@@ -160,7 +160,7 @@ def _prefix_external_names(name_prefix: str, component_code: _ComponentCode) -> 
     for file, text in component_code.text_by_file_name.items():
         prefixed_text = add_prefix_to_includes(text)
         prefixed_files[name_prefix + file] = head + prefixed_text if file.endswith(".c") else prefixed_text
-    for index, text in enumerate(component_code.data_c_texts):
+    for index, text in enumerate(component_code.data_source_texts):
         name = name_prefix + _append_index_to_name("data", index)
         prefixed_files[f"{name}.c"] = f"#define data {name}\n{add_prefix_to_includes(text)}"
     return prefixed_files

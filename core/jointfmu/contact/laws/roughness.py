@@ -197,10 +197,11 @@ def stiffness_onset_pressure(law_parameters: RoughnessLaw) -> Number:
 
 
 def _make_power_term_for_sum(sum_coefficient: Number, sum_exponent: Number) -> PowerTerm:
-    """Term of one spot whose sum over all spots is a given power law: sum_coefficient exp(sum_exponent u).
+    """Power law of one spot such that the sum over all spots is sum_coefficient exp(sum_exponent u).
 
-    u is ln(p/p_1). The law has no real spots; its size distribution, with the exponent _SIZE_EXPONENT, only
-    brings the law into the form of the others.
+    u = ln(p/p_1), with the pressure p and the unit pressure p_1 of the law. The other laws sum a quantity
+    over contact spots with a size distribution; this law gives the sum directly. To have the same form, it
+    uses fictitious spots whose size distribution has the exponent _SIZE_EXPONENT.
     """
     return PowerTerm(sum_coefficient * (sum_exponent - _SIZE_EXPONENT), sum_exponent)
 

@@ -35,7 +35,8 @@ class BoltSprings:
     position           : positions (b, 2) [m] of the bolts, from the centroid of the contact
     bolts_per_position : bolts at each position [1]; not 1 if `n_bolts` differs from the number of positions
     stiffness          : [N/m] of each bolt
-    lift_off_force     : [N] largest magnitude of F_0 + k e at which a bolt counts as at lift-off
+    lift_off_force     : [N] a bolt counts as just lifting off if the magnitude of its spring force F_0 + k e
+                         is below this small force (preload F_0, stiffness k, elongation e)
     """
 
     position: Array

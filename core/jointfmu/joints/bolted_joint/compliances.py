@@ -67,7 +67,7 @@ class Compliances(NamedTuple):
 
     @property
     def total_compliance(self) -> Array:
-        """Compliance (6) [m/N, rad/(N.m)] of the joint."""
+        """Compliance (6) [m/N, rad/(N.m)] of the complete joint: interface, members and bolts in series."""
         return np.asarray(self.component_compliances.sum(axis=0))
 
     @property

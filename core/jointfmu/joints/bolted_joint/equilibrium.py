@@ -313,8 +313,9 @@ class LoadStep:
 
 
 class ModalPredictor(NamedTuple):
-    """Modal coordinates (k) [m] at the end of a load step, by the tangent stiffness H at its start.
+    """Modal coordinates at the end of a load step, predicted with the tangent stiffness H at its start.
 
+    modal_coordinates       : (k) [m] predicted values
     modal_tangent_stiffness : (k, k) [N/m] part of H for the modal coordinates, the first J of Newton's method
     """
 

@@ -411,7 +411,8 @@ def preload_at_temperature(joint_parameters: AnyBoltedJoint, preload: Number, te
 
 
 def slip_force(joint_parameters: AnyBoltedJoint, working_force: Number) -> Number:
-    """Shear force (...) [N] of gross slip: friction coefficient times the working force of all bolts.
+    """Shear force (...) [N] of gross slip: friction coefficient times the clamping force of all bolts.
+
     working_force : (...) [N] of each bolt
     """
     return joint_parameters.mu * joint_parameters.n_bolts * working_force

@@ -149,13 +149,15 @@ class HysteresisSliders(Sliders):
     def unloading_friction(
         self, midline_curve: Curve, reversal_torque: float, half_opening_angle: float
     ) -> float:
-        """Negative friction torque [N.m] after unloading from a torque to the wind-up half_opening_angle.
+        """Minus the friction torque [N.m] when unloading from a torque has reached half_opening_angle.
 
         reversal_torque    : [N.m] torque at which unloading begins
         half_opening_angle : [rad] wind-up at the end of the unloading
 
-        Masing's rule gives the friction. If it equals the torque of the midline at half_opening_angle, the
-        total torque is zero there: at zero torque the branches are then 2 half_opening_angle apart.
+        The friction torque (negative there; the result is positive) follows from Masing's rule. The torque of
+        the drive is the torque of the midline plus the friction torque: it is 0 if the result equals the
+        midline torque at half_opening_angle. The hysteresis loop is then 2 half_opening_angle wide at zero
+        torque.
         """
         turn_wind_up = float(
             self.solve_wind_up(midline_curve, HISTORY_LAYOUT.virgin_history(), reversal_torque)

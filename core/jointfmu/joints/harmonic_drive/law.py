@@ -144,8 +144,9 @@ class HarmonicDriveParameters(ContactPairDriveParameters):
 
     @property
     def contact_pair_law(self) -> Hu2023:
-        """Law of Hu 2023 as printed, for the contact spots at one node of the paper's mesh.
+        """Law of Hu 2023 as printed, for the contact area of one node of the paper's finite-element mesh.
 
+        It gives force and stiffness as functions of the real contact area of this node.
         side1 is the body with the lower yield strength.
         """
         cup, ring = self.flexspline, self.bearing
@@ -257,7 +258,11 @@ def peak_pressure(drive_parameters: ContactPairDriveParameters, torque: Number) 
     )
 
     def saturate_torque(torque: Number) -> tuple[Number, Number]:
-        """Squared saturated torque t^2 [(N.m)^2] at a torque T, and t dt/dT [N.m]."""
+        """Squared saturated torque t^2 [(N.m)^2] and t dt/dT [N.m] at a torque T.
+
+        t = s x/(1 + x^4)^(1/4) with x = T/s: t = T at small torques; its magnitude tends to the saturation
+        torque s at large ones.
+        """
         x = np.minimum(np.maximum(torque / saturation, -1e3), 1e3)
         bend = 1.0 + x**4
         root = np.sqrt(bend)

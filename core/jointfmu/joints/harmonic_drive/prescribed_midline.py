@@ -80,8 +80,8 @@ class PrescribedDriveParameters(DriveParameters):
     """Outputs that a prescribed midline does not determine; they are not drawn."""
 
     @abstractmethod
-    def make_midline_spline_nodes(self) -> Sequence[SplineNode]:
-        """Make the spline nodes of the midline, torque as a function of wind-up, for wind-ups >= 0."""
+    def make_midline_nodes(self) -> Sequence[SplineNode]:
+        """Make the nodes between which the midline (torque over wind-up, wind-ups >= 0) is interpolated."""
 
     @property
     def law(self) -> None:
@@ -208,8 +208,8 @@ class CatalogueDriveParameters(PrescribedDriveParameters):
         """Torque [N.m] at the end of the catalogue's first line, where the first smoothed corner begins."""
         return self.T1 - self.K1 * self.corner_half_width_over_wind_up * self.corner_wind_ups[0]
 
-    def make_midline_spline_nodes(self) -> list[SplineNode]:
-        """Make the spline nodes of the midline: lost motion, both ends of each corner, end of the table."""
+    def make_midline_nodes(self) -> list[SplineNode]:
+        """Make the nodes of the midline: lost motion, both ends of each corner, end of the table."""
         (first, second), (K1, K2, K3) = self.corner_wind_ups, (self.K1, self.K2, self.K3)
         first_width = self.corner_half_width_over_wind_up * first
         second_width = self.corner_half_width_over_wind_up * second
@@ -303,14 +303,14 @@ class TableDriveParameters(MeasuredDriveParameters):
     @cached_property
     def K_FTS(self) -> float:
         """Stiffness K_FTS [N.m/rad] of circular spline and flexspline: twice the largest of the midline."""
-        columns = np.array(self.make_midline_spline_nodes(), dtype=np.float64).T
+        columns = np.array(self.make_midline_nodes(), dtype=np.float64).T
         x, y, s, slope_before, slope_after = columns
         return 2.0 * float(
             np.max(_sample_stiffness(np.diff(x), np.diff(y), s, slope_after[:-1], slope_before[1:]))
         )
 
-    def make_midline_spline_nodes(self) -> list[SplineNode]:
-        """Make the spline nodes of the midline: at zero, and at each point of the measured table."""
+    def make_midline_nodes(self) -> list[SplineNode]:
+        """Make the nodes of the midline: at zero, and at each point of the measured table."""
         x, y = (np.array([0.0, *values]) for values in (self.table.angle, self.table.torque))
         h, torque_steps = np.diff(x), np.diff(y)
         s = _node_stiffness(h, torque_steps / h)

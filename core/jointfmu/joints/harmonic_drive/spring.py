@@ -47,7 +47,7 @@ def torque_curve(drive_parameters: DriveParameters) -> Curve:
         return refine_curve(lambda steps: _tabulate_midline(drive_parameters, steps), MIN_MIDLINE_TABLE_STEPS)
     if isinstance(drive_parameters, PrescribedDriveParameters):
         x, y, s, slope_before, slope_after = np.array(
-            drive_parameters.make_midline_spline_nodes(), dtype=np.float64
+            drive_parameters.make_midline_nodes(), dtype=np.float64
         ).T
         return Curve(x, y, s, slope_after[:-1], slope_before[1:])
     expected = "ContactPairDriveParameters nor PrescribedDriveParameters"
@@ -278,8 +278,10 @@ def stiffness_outputs(
 ) -> dict[str, Number]:
     """Stiffness outputs [N.m/rad] and peak contact pressure p_max [Pa] at a torque [N.m] of the midline.
 
-    K_WTS: drive; K_FTS: circular spline and flexspline; K_TS: contact pair and lost motion, in series with
-    K_FTS; K_TS_pair: K_TS on the scale of Fig. 11 of Hu 2023.
+    K_WTS     : torsional stiffness of the whole drive: K_FTS and K_TS in series
+    K_FTS     : of the flexspline and the circular spline
+    K_TS      : of the contact pair, with lost motion
+    K_TS_pair : K_TS on the scale of Fig. 11 of Hu 2023
     """
     K_TS = midline_stiffness * drive_parameters.K_FTS / (drive_parameters.K_FTS - midline_stiffness)
     return {

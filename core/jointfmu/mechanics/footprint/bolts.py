@@ -76,7 +76,7 @@ class BoltedFrame:
 
     def pressure_distribution(self) -> PressureDistribution:
         """Pressure distribution at the centroids of square area cells of the frame."""
-        areas, points = frame_cells(self)
+        areas, points = divide_frame_into_cells(self)
         unit = bolt_pressures(self, areas, points, points) * areas.sum()
         centroid = np.average(points, axis=0, weights=areas)
         return PressureDistribution(
@@ -87,7 +87,7 @@ class BoltedFrame:
         )
 
 
-def frame_cells(frame_geometry: BoltedFrame) -> tuple[Array, Array]:
+def divide_frame_into_cells(frame_geometry: BoltedFrame) -> tuple[Array, Array]:
     """Areas (n) [m2] and centroids (n, 2) [m] of square cells that divide the frame, without the holes."""
     size = frame_geometry.flange_width / CELLS_ACROSS_FLANGE
     half = 0.5 * np.array([frame_geometry.column_spacing, frame_geometry.row_spacing])

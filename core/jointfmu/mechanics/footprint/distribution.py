@@ -33,7 +33,7 @@ class PressureDistribution:
 
     @property
     def rows(self) -> list[Array]:
-        """Arrays (n) of all numbers of the nodes: share, x, y, both pressure ratios, slider circle radius."""
+        """One array (n) for each number of a node: area share, x, y, and the other fields in their order."""
         share, position, *others = (getattr(self, item.name) for item in fields(self))
         return [share, *position.T, *others]
 

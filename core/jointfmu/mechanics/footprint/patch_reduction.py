@@ -48,7 +48,7 @@ MAX_MOMENT_OVER_OPENING_MOMENT = 2.5
 """Largest moment of the cases, over the moment that opens part of the contact [1].
 
 The latter is computed by `largest_moment_factor`."""
-MIN_SLIP_MOTION_LENGTH, MAX_SLIP_MOTION_LENGTH = 0.05, 3.0
+MIN_MOTION_OVER_SLIP_DISPLACEMENT, MAX_MOTION_OVER_SLIP_DISPLACEMENT = 0.05, 3.0
 """Shortest and longest motion [1], over the motion at which a node at the radius of gyration has mobilised
 all but UNMOBILISED_FRICTION_SHARE of its friction."""
 UNMOBILISED_FRICTION_SHARE = 2.0**-13
@@ -261,7 +261,10 @@ class _SlipCases:
         motion = np.stack([np.choose(kind, each) for each in shift_or_turn])
         motion /= np.sqrt(np.add.reduce(motion * motion, axis=0))
         power = np.choose(number % len(PRESSURE_LAW_EXPONENTS), PRESSURE_LAW_EXPONENTS)
-        way = MIN_SLIP_MOTION_LENGTH + (MAX_SLIP_MOTION_LENGTH - MIN_SLIP_MOTION_LENGTH) * unit[:, 6] ** 2
+        way = (
+            MIN_MOTION_OVER_SLIP_DISPLACEMENT
+            + (MAX_MOTION_OVER_SLIP_DISPLACEMENT - MIN_MOTION_OVER_SLIP_DISPLACEMENT) * unit[:, 6] ** 2
+        )
         columns = (
             power,
             largest_moment * moment,
@@ -475,9 +478,10 @@ class _LinearisedFit:
 
 
 def _fit_points(start_points: Array, fit_target: _TargetSums) -> Array:
-    """Fit n friction patches to target sums by LEVENBERG_MARQUARDT_ITERATIONS Levenberg-Marquardt iterations.
+    """Fit the numbers of n friction patches to target sums, by the Levenberg-Marquardt method.
 
-    Returns the fitted points (6, n): share, x, y, pressure ratios of preload and moment, circle radius.
+    Returns the numbers (6, n) of the patches: share of the area, x and y [m], pressure ratio of the preload,
+    pressure ratio of the moment, and radius [m] of the circle of sliders that replaces the patch in torsion.
     """
     here, damping = (
         _LinearisedFit.linearise(start_points, fit_target, *fit_target.find_residual(start_points)),

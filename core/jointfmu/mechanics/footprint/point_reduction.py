@@ -30,7 +30,7 @@ PRESSURE_LAW_EXPONENTS = (4.0, 8.0, 16.0, 64.0)
 last one is nearly an exponential."""
 SAMPLED_STATE_COUNT = 80
 """Number of sampled states of the joint [1]."""
-UNTILTED_STATE_SHARE = 0.4
+UNTILTED_SHARE_OF_STATES = 0.4
 """Share of the states without normal displacement and tilt [1]."""
 DISPLACED_STATE_WEIGHT = 0.02
 """Weight of the states with displacement and tilt, over the weight of the others [1]."""
@@ -278,7 +278,7 @@ def _sample_load_functions(pressure_distribution: PressureDistribution) -> Array
         2.0 * ((0.5 + (number + 1.0) * _LOW_DISCREPANCY_INCREMENTS) % 1.0).T[..., None] - 1.0
     )
     power = np.choose(number % len(PRESSURE_LAW_EXPONENTS), PRESSURE_LAW_EXPONENTS)
-    is_moved = number >= UNTILTED_STATE_SHARE * SAMPLED_STATE_COUNT
+    is_moved = number >= UNTILTED_SHARE_OF_STATES * SAMPLED_STATE_COUNT
     normal_displacement = is_moved * (
         MAX_SAMPLED_OPENING_OVER_APPROACH * opening
         + MAX_SAMPLED_TILT_OPENING_OVER_APPROACH * (about_x * y - about_y * x)

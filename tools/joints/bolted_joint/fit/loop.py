@@ -306,7 +306,7 @@ def fit(
     )
     measured_rest = data.rest_stiffness(modal_mass)
 
-    def total_stiffness_at_rest(parameter_values: Mapping[str, float]) -> float:
+    def joint_and_structure_stiffness(parameter_values: Mapping[str, float]) -> float:
         """Stiffness [N/m] at rest of joint and structure in series."""
         series = get_series_stiffness(parameter_values)
         return 1.0 / (
@@ -317,7 +317,12 @@ def fit(
     notes = []
     if isinstance(data.measured_data, MeasuredLoops):
         _check_measured_loops(
-            data, data.measured_data, measured_rest / total_stiffness_at_rest({}), make_joint({}), force, file
+            data,
+            data.measured_data,
+            measured_rest / joint_and_structure_stiffness({}),
+            make_joint({}),
+            force,
+            file,
         )
         if not data.measured_data.is_stiffness_resolved and not fitted_names:
             _, *level_names = names
@@ -348,7 +353,7 @@ def fit(
             np.inf,
         )
     ] * (SERIES_STIFFNESS_NAME in names)
-    level = _replace_stiffness_level_by_rest_stiffness(file, names, total_stiffness_at_rest)
+    level = _replace_stiffness_level_by_rest_stiffness(file, names, joint_and_structure_stiffness)
     is_vibration_with_level = data.measurement_kind != "loops" and set(
         DEFAULT_FITTED_PARAMETERS[file.law][1:]
     ) <= set(names)

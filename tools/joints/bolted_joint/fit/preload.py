@@ -336,7 +336,10 @@ def _find_start_values(
     )
 
     def evaluate_start_error(parameter_values: dict[str, float]) -> tuple[Mapping[str, float], float]:
-        """Compute the squared error of start values; a fitted mass is first scaled to the mean frequency."""
+        """Compute the sum of squares of ln(computed/measured frequency) for start values.
+
+        If the mass is fitted, it is first scaled such that the mean of these logarithms is 0.
+        """
         errors = logarithmic_error(parameter_values)
         if "mass" in parameter_values:
             parameter_values["mass"] *= float(np.exp(2.0 * np.mean(errors)))

@@ -374,9 +374,10 @@ def _fit_stiffness(
 ) -> tuple[tuple[FitSolution, FitPlot] | None, list[str]]:
     """Fit stiffness and hysteresis to a log with the motor angle.
 
-    fitted_log : fitted friction, from which the load follows if the log has no torque sensor
+    fitted_log : friction fitted before; it gives the joint torque if the log has no torque sensor
 
-    Returns (solution, picture), or None if the log cannot be fitted; and notes.
+    Returns two values: (solution, plot of the fit), which is None if the log cannot be fitted; and a list of
+    the reasons, for the user.
     """
     if fitted_names and not any(name in hysteresis.ROBOT_LOG_FITTED_PARAMETERS for name in fitted_names):
         return None, []

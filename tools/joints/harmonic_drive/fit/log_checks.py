@@ -20,7 +20,7 @@ MAX_FITTED_OVER_START_FRICTION = 5.0
 """Factor [1] between fitted friction and friction of the start file, above which the fit is doubtful."""
 GRAVITY_HARMONIC_COUNT = 3
 """Harmonics of the joint angle in gravity: an arm has one, springs and cables add some."""
-MAX_MOTION_OVER_GRAVITY_VARIANCE, MIN_RESIDUAL_OVER_GRAVITY_DEVIATION = 0.5, 0.02
+MIN_MOTION_SHARE_OF_VARIANCE, MIN_RESIDUAL_OVER_GRAVITY_DEVIATION = 0.5, 0.02
 """Share of the variance of the gravity column, beyond its function of the angle, that acceleration and sense
 of the motion explain [1]; and standard deviation of the gravity column beyond its function of the angle, over
 standard deviation of the column [1]. From both on, the column is no gravity."""
@@ -124,7 +124,7 @@ def find_gravity_doubt(log_samples: LogSamples) -> str | None:
     size, left = float(np.linalg.norm(without)), float(np.linalg.norm(remaining))
     if size <= MIN_RESIDUAL_OVER_GRAVITY_DEVIATION * float(np.linalg.norm(gravity - gravity.mean())):
         return None
-    if size**2 - left**2 < MAX_MOTION_OVER_GRAVITY_VARIANCE * size**2:
+    if size**2 - left**2 < MIN_MOTION_SHARE_OF_VARIANCE * size**2:
         return None
     return (
         "the column gravity depends on acceleration or sense of the motion, as a measured torque does; "

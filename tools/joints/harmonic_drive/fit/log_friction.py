@@ -164,7 +164,7 @@ UNDETERMINED_DEVIATION_FACTOR, MAX_REFIT_RESIDUAL_INCREASE = 2.0, 2.0
 """Standard deviation of a parameter, as a factor [1], above which it may be undetermined; and increase of the
 residual, in standard deviations for each such parameter [1], up to which the values of the file fit as
 well."""
-VANISHING_PARAMETERS = (STRIBECK_FRICTION_NAME, VISCOUS_FRICTION_NAME)
+PARAMETERS_ALLOWED_AT_ZERO = (STRIBECK_FRICTION_NAME, VISCOUS_FRICTION_NAME)
 """Parameters that a log may show to be 0: the fit ends on their lower bound."""
 MIN_FRICTION_OVER_STANDARD_DEVIATION, MIN_FRICTION_TORQUE_SHARE = 5.0, 0.02
 """Friction over its standard deviation [1], and over the root mean square of the torque [1], from which a
@@ -427,12 +427,12 @@ def refit_without_undetermined_parameters(
 
 
 def accept_vanishing_friction(fitted_log: FittedLogFriction) -> tuple[FittedLogFriction, list[str]]:
-    """Accept that friction parameters vanish: VANISHING_PARAMETERS on their lower bound, which stands for 0.
+    """Accept that friction parameters are 0: PARAMETERS_ALLOWED_AT_ZERO that end on their lower bound.
 
     Returns the fit, with these parameters no longer on a bound, and notes about them.
     """
     solution = fitted_log.friction_solution
-    vanishing = [name for name in solution.names_at_bound if name in VANISHING_PARAMETERS]
+    vanishing = [name for name in solution.names_at_bound if name in PARAMETERS_ALLOWED_AT_ZERO]
     others = tuple(name for name in solution.names_at_bound if name not in vanishing)
     notes = [f"the log shows no {name}: its smallest value fits best" for name in vanishing]
     return replace(fitted_log, friction_solution=replace(solution, names_at_bound=others)), notes

@@ -35,7 +35,7 @@ class FrictionRipple:
     harmonic_order: int
     ripple_amplitude: float
     ripple_phase: float
-    amplitude_deviation: float
+    amplitude_standard_deviation: float
     phase_deviation: float
 
 
@@ -129,7 +129,7 @@ def add_friction_ripples(
     for ripple in friction_ripples:
         name = f"friction_{ripple.harmonic_order}"
         for key, value, deviation, unit in (
-            (name, ripple.ripple_amplitude, ripple.amplitude_deviation, "N.m"),
+            (name, ripple.ripple_amplitude, ripple.amplitude_standard_deviation, "N.m"),
             (f"{name}_phase", ripple.ripple_phase, ripple.phase_deviation, "rad"),
         ):
             low, high = value - factor * deviation, value + factor * deviation
