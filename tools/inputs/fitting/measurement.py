@@ -235,6 +235,16 @@ class Measurement:
             0.5 * np.ptp(self.joint_motion) if self.measurement_kind == "loops" else np.max(self.joint_motion)
         )
 
+    @property
+    def describe_amplitude(self) -> str:
+        """Meaning of `largest_amplitude`, as text."""
+        name = self.column_names.motion_column
+        if self.measurement_kind == "loops":
+            return f"half the range of the {name}"
+        if self.measurement_kind == "decay":
+            return f"largest mean {name} amplitude of a window of the decay"
+        return f"largest {name} amplitude"
+
     def rest_stiffness(self, inertia: float | None) -> float:
         """Approximate stiffness [N/m or N.m/rad] at small motions.
 

@@ -31,7 +31,8 @@ MAX_DEVIATION_OVER_INTERVAL = 0.1
 """Standard deviation over the length of the parameter's interval, both in logarithms [1], up to which a
 parameter counts as determined."""
 MIN_OVER_MAX_EXPONENT = 0.01
-"""Exponent over the largest exponent of a combination [1], below which the parameter is not named in it."""
+"""Exponent over the largest exponent of a combination [1], below which the parameter is not named in it,
+unless its uncertainty alone would exceed that of the combination."""
 MIN_OVER_MAX_SINGULAR_VALUE = 1e-5
 """Singular value over the largest [1], below which it counts as zero: accuracy of the finite differences."""
 
@@ -77,19 +78,23 @@ def max_deviation_of_determined_parameter(unknown: Unknown) -> float:
 def find_parameter_combinations(solution: FitSolution) -> list[ParameterCombination]:
     """Statistically independent combinations of the parameters of a solution, best determined first."""
     limits = np.array([max_deviation_of_determined_parameter(u) for u in solution.unknowns])
+    deviations = np.array([*solution.relative_deviations.values()])
     _, s, rows = np.linalg.svd(solution.jacobian * limits, full_matrices=False)
     independent = []
     for value, row in zip(s, rows, strict=True):
         powers = row / limits  # ln of the combination is row . (ln x / limits)
         largest = powers[np.argmax(np.abs(row))]
-        significant = np.abs(row) >= MIN_OVER_MAX_EXPONENT * np.max(np.abs(row))
+        has_no_effect = value <= MIN_OVER_MAX_SINGULAR_VALUE * s[0]
+        deviation = np.inf if has_no_effect else solution.noise / value
+        share = np.abs(row) / np.max(np.abs(row))
+        significant = (share >= MIN_OVER_MAX_EXPONENT) | (
+            (share >= MIN_OVER_MAX_SINGULAR_VALUE) & (np.abs(powers) * deviations >= deviation)
+        )
         exponents = {
             u.parameter_name: float(p / largest)
             for u, p, is_named in zip(solution.unknowns, powers, significant, strict=True)
             if is_named
         }
-        has_no_effect = value <= MIN_OVER_MAX_SINGULAR_VALUE * s[0]
-        deviation = np.inf if has_no_effect else solution.noise / value
         independent.append(
             ParameterCombination(
                 exponents,
@@ -367,19 +372,23 @@ def build_fitted_file(
     value_origin: str,
     data_file_name: str,
     measured_range_text: str,
+    undetermined_names: Sequence[str] = (),
 ) -> ParameterFile:
     """Copy of a parameter file with fitted values; their source states data, range and date.
 
     data_file_name, measured_range_text : data file and range of the data, as text
     value_origin               : kind of the source
+    undetermined_names         : parameters that the data do not determine: their kind is "estimate"
 
     The date is today, or SOURCE_DATE_EPOCH if that environment variable is set (reproducible files).
 
     Raises ValueError if SOURCE_DATE_EPOCH is not a number of seconds.
     """
     today = get_build_time().date().isoformat()
-    file = start_file.with_values(
-        parameter_values, value_origin, f"fitted to {data_file_name}, {today}, {measured_range_text}"
+    source = f"fitted to {data_file_name}, {today}, {measured_range_text}"
+    undetermined = {name: parameter_values[name] for name in undetermined_names if name in parameter_values}
+    file = start_file.with_values(parameter_values, value_origin, source).with_values(
+        undetermined, "estimate", f"{source}; not determined: other values fit as well"
     )
     return replace(file, name=f"fitted to {data_file_name}")
 

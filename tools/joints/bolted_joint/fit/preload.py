@@ -41,10 +41,12 @@ from ....inputs.fitting.least_squares import (
     solve_least_squares,
 )
 from ....inputs.fitting.outcome import (
+    RMS_HEIGHT_PARAMETER,
     DerivedFitValues,
     FitPlot,
     FitResult,
     build_fitted_file,
+    find_undetermined_parameters,
     make_fit_unknowns,
     note_residual_correlation,
 )
@@ -58,6 +60,9 @@ COLUMN_UNITS: Mapping[str, UnitSizes] = {
     "frequency": unit_sizes("Hz", "kHz"),
 }
 """Columns of a file of the fit, with their units."""
+MAX_ROUGHNESS_OVER_START_VALUE = 10.0
+"""Fitted roughness over that of the start file [1], above which it is no roughness: the range of a process
+(ASME B46.1) is about a factor of 4 on each side of its mean."""
 MIN_STATISTICAL_DEGREES_OF_FREEDOM = 2
 """Number of points in excess of the unknowns [1], from which the fit estimates the noise of a point."""
 ASSUMED_RELATIVE_NOISE = 0.05
@@ -105,6 +110,48 @@ def compute_joint_stiffness(
         )
         return np.asarray(normal + joint_parameters.n_bolts * joint_parameters.bolt_stiffness * pulling)
     return np.asarray(joint_parameters.shear_stiffness_ratio() * normal)
+
+
+def describe_series_remedy(start_file: ParameterFile) -> str:
+    """What to do if bodies in series with the joint make the measured stiffness too small, as text."""
+    members = (
+        ""
+        if start_file.values.has_elastic_members
+        else "start from a file with sides = elastic (--params), or "
+    )
+    return f"{members}state --series-stiffness, or fit it (--free ... {SERIES_STIFFNESS_NAME})"
+
+
+def note_large_roughness(start_file: ParameterFile, solution: FitSolution) -> list[str]:
+    """Note for the user if the fitted roughness is far above that of the start file; else an empty list.
+
+    Then the compliance of bodies in series with the joint counts as roughness.
+    """
+    fitted, start = (
+        values.get(RMS_HEIGHT_PARAMETER, 0.0) for values in (solution.values, start_file.values_by_name)
+    )
+    if fitted <= MAX_ROUGHNESS_OVER_START_VALUE * start:
+        return []
+    return [
+        f"{RMS_HEIGHT_PARAMETER} = {1e6 * fitted:.3g} um is {fitted / start:.3g} times that of the start "
+        f"file, {1e6 * start:.3g} um: members or structure in series with the joint probably count as "
+        f"roughness; {describe_series_remedy(start_file)}"
+    ]
+
+
+def make_embedding_fact(start_file: ParameterFile, preload: float | None = None) -> DerivedFitValues:
+    """Fact of a fit: force that clamps the joint, if embedding reduces the preload; else empty.
+
+    preload : of each bolt in the test [N]; None: several preloads, the fact is the embedding
+    """
+    embedding = float(start_file.values.embedding)
+    if not embedding:
+        return {}
+    if preload is None:
+        text = "subtracted from each preload: the force that clamps the joint in the fit"
+        return {"embedding": (embedding, "N", text)}
+    text = f"per bolt, of the fit: preload {preload:g} N minus embedding {embedding:.5g} N of the start file"
+    return {"clamping_force": (float(working_preload(start_file.values, preload)), "N", text)}
 
 
 @cache
@@ -172,7 +219,9 @@ def fit(
     solution, is_noise_assumed = _solve_fit(unknowns, logarithmic_error, curve)
     own = {name: value for name, value in solution.values.items() if name != SERIES_STIFFNESS_NAME}
     span = f"preload {curve.preloads[0]:g} to {curve.preloads[-1]:g} N, {direction} {curve.quantity_name}"
-    result = build_fitted_file(file, own, "calibration", Path(data_path).name, span)
+    result = build_fitted_file(
+        file, own, "calibration", Path(data_path).name, span, find_undetermined_parameters(solution)
+    )
     stiffness = solution.values.get(SERIES_STIFFNESS_NAME, series_stiffness)
     margin = 0.5 * curve.preloads[0] if curve.different_preload_count == 1 else 0.0
     grid = np.linspace(curve.preloads[0] - margin, curve.preloads[-1] + margin, 200)
@@ -204,7 +253,9 @@ def fit(
             f"frequencies determine K/mass only: mass is fitted, and {level} keeps its value; state the "
             f"modal mass to fit {level}"
         )
-    return FitResult(result, solution, _summarise_fit(curve, solution), [picture], notes=notes)
+    notes += note_large_roughness(file, solution)
+    facts = make_embedding_fact(file) | _summarise_fit(curve, solution)
+    return FitResult(result, solution, facts, [picture], notes=notes)
 
 
 @dataclass(frozen=True, slots=True)
