@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.inputs.fitting import branches
 from jointfmu_tools.inputs.fitting.hysteresis import HysteresisLaw, Oscillator
@@ -185,3 +186,15 @@ def test_a_soft_structure_is_no_roughness(tmp_path):
     assert not any(
         "--series-stiffness" in text for text in loop.fit(path, JOINT, preload=PRELOAD, modal_mass=MASS).notes
     )
+
+
+def test_loops_of_a_soft_structure_need_its_stiffness(tmp_path, capsys):
+    """The structure is sixty times softer than the interface; the ratio might be that of a wrong unit."""
+    series = STIFFNESS / 60.0
+    motion, force = iwan_loops(4.0 * LIMIT / STIFFNESS, noise=0.0)
+    path = save(tmp_path / "soft.csv", "displacement [m],force [N]", motion + force / series, force)
+    line = refused_line(capsys, "fit", "loop", path, "--params", DATA / "angle.toml", "--preload", PRELOAD)
+    assert "sides = elastic, or state --series-stiffness" in line
+    found = loop.fit(path, JOINT, ["mu", "h", "series_stiffness"], preload=PRELOAD)
+    assert found.solution.values["series_stiffness"] == pytest.approx(series, rel=0.05)
+    assert found.parameters.values.mu == pytest.approx(LIMIT / NORMAL_FORCE, rel=0.02)

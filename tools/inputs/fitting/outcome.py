@@ -15,10 +15,12 @@ from numpy.typing import NDArray
 
 from jointfmu.contact.roughness import MAX_ROUGHNESS_HEIGHT
 from jointfmu.files.timestamp import get_build_time
+from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array, Interval, flatten_fields
 
 from ...common import plots
+from ...common.names import find_similar_names
 from .least_squares import FitSolution, Unknown
 
 if TYPE_CHECKING:
@@ -230,6 +232,8 @@ class FitResult:
             and count == len(names)
             and not any(c.is_determined for c in find_parameter_combinations(self.solution))
         ):
+            if count == 1:
+                return f"the data do not determine {names[0]}; {_REMEDY_TEXT}"
             return f"the data determine none of {', '.join(names)}, nor a combination of them; {_REMEDY_TEXT}"
         if "loop_area_law" in self.facts:
             measured, law = self.facts["loop_area"][0], self.facts["loop_area_law"][0]
@@ -335,11 +339,15 @@ def _finite_or_none(number: float) -> float | None:
 
 
 def make_fit_unknowns(
-    start_file: ParameterFile, fitted_names: Sequence[str], bounds_by_name: Mapping[str, tuple[float, float]]
+    start_file: ParameterFile,
+    fitted_names: Sequence[str],
+    bounds_by_name: Mapping[str, tuple[float, float]],
+    other_names: Sequence[str] = (),
 ) -> list[Unknown]:
     """Make the unknowns of a fit: named parameters, with values of `start_file` and declared intervals.
 
     bounds_by_name : {name: (low, high)} that narrow the declared intervals
+    other_names    : unknowns that are no parameters of the joint, which the user may name too
 
     Raises ValueError for a name that the joint lacks, that is not a number, or that is given twice.
     """
@@ -347,13 +355,27 @@ def make_fit_unknowns(
     declared = {n: f for n, f in flatten_fields(type(start_file.values)) if isinstance(values.get(n), float)}
     for name in fitted_names:
         if name not in declared:
-            raise ValueError(f"{name!r} is not a parameter to fit; allowed are {', '.join(declared)}")
+            raise ValueError(_describe_unknown_name(name, start_file, [*declared, *other_names]))
         if fitted_names.count(name) > 1:
             raise ValueError(f"{name!r} is given twice; state it once")
         meta = declared[name].metadata
         interval = meta["interval"].intersection(Interval(*bounds_by_name.get(name, ())))
         result.append(Unknown(name, meta["unit"], float(values[name]), interval.low, interval.high))
     return result
+
+
+def _describe_unknown_name(unknown_name: str, start_file: ParameterFile, allowed_names: Sequence[str]) -> str:
+    """Describe a name that cannot be fitted, as error message: law that has it, or the nearest name."""
+    laws = KINDS[start_file.joint].laws
+    other = [law for law, cls in laws.items() if unknown_name in dict(flatten_fields(cls))]
+    if other and start_file.law not in other:
+        return (
+            f"{unknown_name!r} is a parameter of the law {' and '.join(other)}, but {start_file.name} has "
+            f"the law {start_file.law}; allowed are {', '.join(allowed_names)}"
+        )
+    similar = find_similar_names(unknown_name, allowed_names, 1)
+    hint = f" (did you mean {similar[0]}?)" if similar else ""
+    return f"{unknown_name!r} is not a parameter to fit{hint}; allowed are {', '.join(allowed_names)}"
 
 
 def make_predictor(

@@ -46,6 +46,7 @@ from .preload import (
     BOLTED_JOINT_FOR_FITS,
     SERIES_STIFFNESS_NAME,
     compute_joint_stiffness,
+    describe_series_remedy,
     make_embedding_fact,
     merged_normalised_pressure,
     note_large_roughness,
@@ -338,6 +339,7 @@ def fit(
             make_joint({}),
             force,
             file,
+            SERIES_STIFFNESS_NAME in names,
         )
         if not data.measured_data.is_stiffness_resolved and not fitted_names:
             _, *level_names = names
@@ -357,7 +359,12 @@ def fit(
             "data, joint and structure together have at least this stiffness at rest",
             SERIES_STIFFNESS_NAME,
         )
-    unknown_list = make_fit_unknowns(file, [name for name in names if name not in UNKNOWNS_OUTSIDE_JOINT], {})
+    unknown_list = make_fit_unknowns(
+        file,
+        [name for name in names if name not in UNKNOWNS_OUTSIDE_JOINT],
+        {},
+        UNKNOWNS_OUTSIDE_JOINT if data.measurement_kind != "loops" else (SERIES_STIFFNESS_NAME,),
+    )
     unknown_list += [hysteresis_fit.UNKNOWN_DAMPING_RATIO] * (hysteresis_fit.DAMPING_RATIO_NAME in names)
     unknown_list += [
         Unknown(
@@ -437,7 +444,7 @@ def fit(
         hysteresis_fit.make_fit_plots(data, model, solution.values, scale),
         notes=[
             *notes,
-            *note_large_roughness(file, solution),
+            *note_large_roughness(file, solution, not is_joint_alone),
             *_note_friction_limit(joint_facts, result.values.mu),
             *hysteresis_fit.list_misfit_notes(data, solution, law, scale),
         ],
@@ -488,11 +495,13 @@ def _check_measured_loops(
     joint_parameters: AnyBoltedJoint,
     preload: float,
     start_file: ParameterFile,
+    is_series_fitted: bool,
 ) -> None:
     """Check measured loops: stiffness after reversals, gross-slip force, and no bolt touches its hole.
 
     measured_over_start_stiffness : measured stiffness over stiffness of the start values [1]
     joint_parameters, preload     : joint with the start values, preload [N] of each bolt
+    is_series_fitted              : whether the fit finds a stiffness in series; the joint may then be soft
 
     Raises ValueError for loops whose force rises again after slip. Raises InputRefusal for a stiffness far
     from the stiffness of the start values, and for a slip force without a plausible friction coefficient.
@@ -516,13 +525,23 @@ def _check_measured_loops(
                 "bolt",
                 "preload",
             )
-    if measured_loops.is_stiffness_resolved or measured_over_start_stiffness > 1.0:
+    if measured_over_start_stiffness > 1.0:
         LOOP_COLUMN_NAMES.check_stiffness_ratio(
             measured_data.measurement_path,
             measured_over_start_stiffness,
             measured_data.stated_units,
             start_file,
             slip_force is not None,
+        )
+    elif measured_loops.is_stiffness_resolved and not is_series_fitted:
+        LOOP_COLUMN_NAMES.check_stiffness_ratio(
+            measured_data.measurement_path,
+            measured_over_start_stiffness,
+            measured_data.stated_units,
+            start_file,
+            slip_force is not None,
+            "members or structure in series with the joint may make it soft: "
+            f"{describe_series_remedy(start_file, False)}",
         )
 
 
