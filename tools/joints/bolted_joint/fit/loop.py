@@ -433,7 +433,7 @@ def fit(
     if "mu" in names and not is_exponent_fitted and slip_ratio < MIN_SLIP_RATIO_FOR_FRICTION:
         exponent, mu = joint_facts["exponent"][0], solution.values["mu"]
         notes.append(
-            f"slip_reached = {slip_ratio:.2g} is below {MIN_SLIP_RATIO_FOR_FRICTION:g}: the data determine "
+            f"slip_reached = {slip_ratio:.3g} is below {MIN_SLIP_RATIO_FOR_FRICTION:g}: the data determine "
             f"only exponent/mu = {exponent / mu:.4g}; mu = {mu:.3g} holds for the exponent {exponent:.3g} of "
             "the law, which is not fitted: add data of larger amplitude"
         )
