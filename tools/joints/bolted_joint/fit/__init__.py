@@ -16,6 +16,7 @@ FIT_PROCEDURES = (
     FitProcedure(
         procedure_name="preload",
         procedure_description="the bolted joint to stiffness or frequency over preload",
+        default_start_text="none, state it",
         takes_file=True,
         procedure_options=(
             Option(
@@ -26,7 +27,8 @@ FIT_PROCEDURES = (
             ),
             Option(
                 "modal_mass",
-                "mass that vibrates on the joint [kg], for frequencies only (default: the fit finds it)",
+                "mass that vibrates on the joint [kg], for frequencies only (default: mass is fitted instead "
+                "of the stiffness)",
                 is_number=True,
             ),
             SERIES_STIFFNESS_OPTION,
@@ -35,7 +37,9 @@ FIT_PROCEDURES = (
     ),
     FitProcedure(
         procedure_name="loop",
-        procedure_description="the bolted joint to loops, decays or responses in shear",
+        procedure_description="friction and stiffness of the bolted joint to loops, decays or responses of "
+        "its displacement in shear",
+        default_start_text="bolted joint: box specimen of Zhao 2018",
         takes_file=True,
         identifying_column="displacement",
         procedure_options=(

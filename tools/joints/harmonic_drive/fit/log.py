@@ -321,15 +321,13 @@ def _make_fitted_parameter_file(
         "calibration",
         file_label,
         _describe_speed_and_temperature_ranges(log_samples),
+        [name for name in fit_solution.values if name not in confidence_intervals],
     )
-    for name, value in fit_solution.values.items():
-        kind, text = "estimate", "not determined: other values fit as well"
-        if name in confidence_intervals:
-            kind = "calibration"
-            text = "{:g} % interval {:.4g} to {:.4g}".format(
-                100.0 * CONFIDENCE_LEVEL, *confidence_intervals[name]
-            )
-        result = result.with_values({name: value}, kind, f"{result.sources[name]}; {text}")
+    for name, interval in confidence_intervals.items():
+        text = "{:g} % interval {:.4g} to {:.4g}".format(100.0 * CONFIDENCE_LEVEL, *interval)
+        result = result.with_values(
+            {name: fit_solution.values[name]}, "calibration", f"{result.sources[name]}; {text}"
+        )
     return result
 
 
