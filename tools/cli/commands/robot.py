@@ -108,14 +108,16 @@ def _run_robot(args: argparse.Namespace) -> CommandResult:
     if args.fmu:
         robot_system.list_joint_names(model)
         check_outputs(list_system_fmu_paths(title, args.out), ARCHIVE_FILE, args.force)
-    made = elastic.add_drives(spec, axes)
-    _write_robot(written, made, args)
-    _write_robot(rigid, rigid_joints.add_rigid_drives(spec, axes), args)
-    write_text(actuators, rigid_joints.format_actuators(axes))
     grid, found = drawn.compute_frequencies_over_grid(model, axes, pose, args.payload, tip)
     drawn.draw_frequencies(pictures[0], axes, grid, found)
     if not angles:
         pose = drawn.find_worst_pose(model, axes, pose, grid, args.payload, tip)
+    elastic.set_default_time_step(spec, args.robot, poses.find_largest_stable_step(model, axes, pose))
+    has_new_step, model.opt.timestep = spec.option.timestep != model.opt.timestep, spec.option.timestep
+    longest = poses.find_largest_stable_step(model, axes, pose)
+    _write_robot(written, elastic.add_drives(spec, axes), args)
+    _write_robot(rigid, rigid_joints.add_rigid_drives(spec, axes), args)
+    write_text(actuators, rigid_joints.format_actuators(axes))
     wound, sunk = drawn.draw_deflection_over_payload(pictures[1], model, axes, pose, args.payload, tip)
     ringing = poses.compute_ringing(
         model, axes, pose, args.payload, tip, np.arange(0.0, RINGING_DURATION, RINGING_TIME_STEP)
@@ -139,13 +141,24 @@ def _run_robot(args: argparse.Namespace) -> CommandResult:
             more += build_system_fmus(
                 robot_system.make_robot_system(arm, title, text, args.payload), args.out, overwrite=args.force
             )
-    longest = poses.find_largest_stable_step(model, axes, pose)
     weight, jacobian = poses.compute_weight_torques(model, axes, pose, args.payload, tip)
     plain, plain_sunk = poses.compute_weight_deflection(
         model, axes, pose, args.payload, tip, [axis.fitted_spring for axis in axes]
     )
     under = list(zip(axes, weight.tolist(), strict=True))
-    notes = [line for axis in axes for line in axis.deviation_notes]
+    notes = []
+    if has_new_step:
+        notes.append(
+            f"{args.robot} states no timestep; the written files have {model.opt.timestep:g} s. MuJoCo can "
+            f"diverge with steps above {longest:.3g} s"
+        )
+    elif model.opt.timestep > longest:
+        notes.append(
+            f"the timestep of {args.robot}, {model.opt.timestep:g} s, is too long for the drives: MuJoCo can "
+            f"diverge; use at most {longest:.3g} s, and write the files again"
+        )
+    notes += [line for axis in axes for line in axis.deviation_notes]
+    notes += elastic.list_presliding_notes(spec, axes)
     notes += [line for axis, torque in under for line in axis.list_overload_warnings(torque)]
     largest = drawn.compute_largest_torques(model, axes, pose, grid, args.payload, tip).tolist()
     notes += _describe_other_poses(under, largest)
@@ -172,11 +185,6 @@ def _run_robot(args: argparse.Namespace) -> CommandResult:
         for line in axis.drive.omitted_effects
     )
     notes += dict.fromkeys(lacking)
-    if model.opt.timestep > longest:
-        notes.append(
-            f"the timestep of the MJCF, {model.opt.timestep:g} s, is too long for the drives; use at most "
-            f"{longest:.3g} s"
-        )
     facts = {
         "written": [str(path) for path in (written, rigid, actuators, *pictures, *more)],
         "payload": args.payload,

@@ -2,7 +2,7 @@
 
 import os
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
@@ -16,7 +16,7 @@ from jointfmu.files.reading import check_regular_file
 from jointfmu.quantity import Array
 
 from . import bristles
-from .mjcf import check_mujoco_version
+from .mjcf import MUJOCO_DEFAULT_TIME_STEP, check_mujoco_version
 from .spring_fit import FittedSpring, fit_spring
 from .transmission import Transmission
 
@@ -26,6 +26,10 @@ MOTOR_NAME_SUFFIX = "_motor"
 """Suffix of the name of a motor joint, after the name of the driven joint."""
 MOTOR_BODY_NAME_PREFIX = "drive_motors"
 """Prefix of the names of the bodies that carry the motors."""
+TIME_STEP_SAFETY_FACTOR = 2.0
+"""Largest stable step over the step that is written for a robot without time step, at least [1].
+
+Beyond the rated torque the springs are stiffer than the stable step assumes: up to four times is allowed."""
 _ADVICE_BY_MUJOCO_ERROR = {
     "mjMINVAL": "; state the mass and the inertia of this link in its <inertial>",
     "Error opening file": "; expected this file in the folder of the robot file, or in its meshdir",
@@ -135,17 +139,39 @@ def make_axes(robot_spec: Any, drive_by_joint: Mapping[str, Transmission]) -> li
                     "no armature in the file; the rotor inertia is set equal to the inertia that the axis "
                     "moves in the reference pose of the file"
                 )
-            if drive.static_friction and bristles.is_integrator_stable(model.opt):
-                angle = bristles.compute_presliding_angle(drive, rotor / drive.ratio**2, model.opt.timestep)
-                if angle > 1.01 * drive.presliding_angle:
-                    notes.append(
-                        f"friction builds up over {angle:.3g} rad of the motor in the MJCF, because its "
-                        f"steps are long, and over {drive.presliding_angle:g} rad in the FMU"
-                    )
             lines = tuple(f"{joint.name}: {line}" for line in notes)
             spring = fit_drive(drive, drive.rated_torque)
             elastic_axes.append(ElasticAxis(joint.name, drive, spring, rotor, lines))
     return elastic_axes
+
+
+def list_presliding_notes(robot_spec: Any, robot_axes: Iterable[ElasticAxis]) -> Iterator[str]:
+    """Yield a text for each motor whose presliding angle in the MJCF exceeds that in the FMU."""
+    for axis in robot_axes:
+        drive, inertia = axis.drive, axis.rotor_inertia / axis.drive.ratio**2
+        if drive.static_friction and bristles.is_integrator_stable(robot_spec.option):
+            angle = bristles.compute_presliding_angle(drive, inertia, robot_spec.option.timestep)
+            if angle > 1.01 * drive.presliding_angle:
+                yield (
+                    f"{axis.joint_name}: friction builds up over {angle:.3g} rad of the motor in the MJCF, "
+                    f"because its steps are long, and over {drive.presliding_angle:g} rad in the FMU"
+                )
+
+
+def set_default_time_step(robot_spec: Any, robot_path: str | Path, largest_stable_step: float) -> None:
+    """Set a step of 1, 2, 5, 10, ... for a robot whose file states none, if MuJoCo's default is too long.
+
+    A step in an included file is found unless it is MuJoCo's default.
+
+    largest_stable_step : of the robot with its drives [s]
+    """
+    if robot_spec.option.timestep != MUJOCO_DEFAULT_TIME_STEP or b"timestep" in Path(robot_path).read_bytes():
+        return
+    allowed = largest_stable_step / TIME_STEP_SAFETY_FACTOR
+    if allowed < MUJOCO_DEFAULT_TIME_STEP:
+        decade = 10.0 ** np.floor(np.log10(allowed))
+        digit = max(x for x in (1.0, 2.0, 5.0) if x * decade <= allowed)
+        robot_spec.option.timestep = float(f"{digit * decade:.1g}")
 
 
 def compute_mass_matrix(robot_model: Any, robot_pose: Array) -> Array:
