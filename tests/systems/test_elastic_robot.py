@@ -19,7 +19,7 @@ from clients import needs
 from conftest import here_alone, refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.api import drive
-from jointfmu_tools.exchange.robots import elastic, pictures, poses
+from jointfmu_tools.exchange.robots import elastic, pictures, poses, rigid_tree
 from jointfmu_tools.joints.harmonic_drive.transmission import make_transmission
 from jointfmu_tools.run.proof.run import prove
 from surroundings import environment
@@ -423,12 +423,28 @@ def test_robots_of_others(wheel, end, count, tmp_path, capsys, few_poses):
         (["--drive", "joint1=CSG-14-100", "--pose", "joint1=up"], "--pose joint1 = 'up' is not a number"),
         (
             ["--drive", "joint1=CSG-14-100", "--pose", "joint2=90"],
-            r"--pose joint2 = 90 rad is outside \[-2, 2\] rad",
+            r"--pose joint2 = 90 rad is outside \[-2, 2\] rad; an angle in degrees is joint2=90deg",
         ),
+        (["--drive", "joint1=CSG-14-100", "--payload", "3m"], "measures another quantity than 'kg'"),
+        (["--drive", "joint1=CSG-14-101"], "nearest are CSG-14-100"),
     ],
 )
 def test_refusals(words, line, tmp_path, capsys):
     assert re.search(line, refused_line(capsys, "robot", ROBOT, *words, "--out", tmp_path))
+
+
+def test_numbers_of_a_robot_may_have_units(tmp_path, capsys, few_poses):
+    words = ["--drive", "joint2=csg40100", "--pose", "joint2=40deg", "--payload", "500g"]
+    said = made(capsys, ROBOT, tmp_path, *words)
+    assert said["pose"]["joint2"] == pytest.approx(np.deg2rad(40.0))
+    assert said["payload"] == 0.5
+
+
+def test_the_effects_that_the_fmu_of_a_robot_lacks_are_listed():
+    """The six-axis arm has limits of its joints and two actuators."""
+    texts = rigid_tree.list_omitted_effects(mujoco.MjModel.from_xml_path(str(ROBOT)))
+    assert [text.split()[0] for text in texts] == ["limits", "actuators"]
+    assert "motor1" in texts[1]
 
 
 def test_drives_of_one_name_that_differ_are_refused(tmp_path, capsys):

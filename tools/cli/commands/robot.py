@@ -21,6 +21,7 @@ from jointfmu.files.writing import write_text
 
 from ...common import plots
 from ...common.options import require_package
+from ...inputs.drawing.reading import parse_number
 from ..command import CommandResult, SubParsers, declare_argument, declare_command
 from ..outputs import check_input_overwrite, declare_output
 
@@ -42,9 +43,10 @@ def add_command(command_parsers: SubParsers) -> None:
     )
     declare_argument(sub, "--drive", str, text, "JOINT=NAME", required=True, **several)
     declare_argument(
-        sub, "--payload", float, "mass of the payload, a point mass at the tip [kg]", "M", default=1.0
+        sub, "--payload", str, "mass of the payload, a point mass at the tip [kg]", "M", default="1"
     )
-    declare_argument(sub, "--tip", str, "body whose origin is the tip (default: the last body)", "BODY")
+    text = "body whose origin is the tip (default: the last body after the last axis)"
+    declare_argument(sub, "--tip", str, text, "BODY")
     sub.add_argument(
         "--pose",
         nargs="+",
@@ -52,9 +54,9 @@ def add_command(command_parsers: SubParsers) -> None:
         default=[],
         metavar="JOINT=ANGLE",
         help=(
-            "joint angles [rad] of the pose for deflection and vibration; other joints are at zero or as in "
-            "the first keyframe (default: of a grid of poses, the one with the largest deflection of the "
-            "tip)"
+            "joint angles [rad, or with a unit as in 90deg] of the pose for deflection and vibration; other "
+            "joints are at zero or as in the first keyframe (default: of a grid of poses, the one with the "
+            "largest deflection of the tip)"
         ),
     )
     text = "also write the robot with its drives as MuJoCo plugins, compiled on this machine"
@@ -72,6 +74,7 @@ def _run_robot(args: argparse.Namespace) -> CommandResult:
         _parse_joint_values(args.drive, "--drive", "NAME"),
         _parse_joint_values(args.pose, "--pose", "ANGLE"),
     )
+    args.payload = parse_number("payload", args.payload, "kg", "kg", lower_bound=None)
     if not 0.0 <= args.payload <= MAX_PAYLOAD:
         raise ValueError(f"--payload = {args.payload:g} kg is outside [0, {MAX_PAYLOAD:g}] kg")
     pictures = [args.out / f"{name}.png" for name in ("frequencies", "payload", "ringing")]
@@ -286,7 +289,8 @@ def _format_results(json_document: dict[str, Any], robot_model: Any) -> Sequence
         f"{1e3 * plain['tip_error']:.4g} mm",
         *(
             f"stop of {name} from rated torque: the tip rings with {1e3 * values['amplitude']:.3g} mm, "
-            f"after {RINGING_DURATION:g} s with {1e3 * values['last_amplitude']:.3g} mm"
+            f"between {0.9 * RINGING_DURATION:g} s and {RINGING_DURATION:g} s with "
+            f"{1e3 * values['last_amplitude']:.3g} mm"
             for name, values in json_document["ringing"].items()
         ),
         *json_document["notes"],

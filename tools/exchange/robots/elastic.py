@@ -15,6 +15,7 @@ import numpy as np
 from jointfmu.files.reading import check_regular_file
 from jointfmu.quantity import Array
 
+from ...inputs.drawing.reading import parse_number
 from . import bristles
 from .mjcf import MUJOCO_DEFAULT_TIME_STEP, check_mujoco_version
 from .spring_fit import FittedSpring, fit_spring
@@ -32,6 +33,7 @@ TIME_STEP_SAFETY_FACTOR = 2.0
 Beyond the rated torque the springs are stiffer than the stable step assumes: up to four times is allowed."""
 _ADVICE_BY_MUJOCO_ERROR = {
     "mjMINVAL": "; state the mass and the inertia of this link in its <inertial>",
+    "could not find decoder": "; MuJoCo reads files that end in .xml or .urdf; a drive belongs to --drive",
     "Error opening file": "; expected this file in the folder of the robot file, or in its meshdir",
 }
 """{part of an error of MuJoCo: what the user can do}, behind the error."""
@@ -136,8 +138,9 @@ def make_axes(robot_spec: Any, drive_by_joint: Mapping[str, Transmission]) -> li
             if rotor <= 0.0:
                 rotor = float(matrix[dof, dof])
                 notes.append(
-                    "no armature in the file; the rotor inertia is set equal to the inertia that the axis "
-                    "moves in the reference pose of the file"
+                    f"no armature in the file; it is set to {rotor:.4g} kg.m2, the inertia that the axis "
+                    "moves in the reference pose of the file; the rotor inertia is then "
+                    f"{rotor / drive.ratio**2:.4g} kg.m2"
                 )
             lines = tuple(f"{joint.name}: {line}" for line in notes)
             spring = fit_drive(drive, drive.rated_torque)
@@ -294,7 +297,7 @@ def coordinate_unit(robot_model: Any, joint_name: str) -> str:
 def make_robot_pose(robot_model: Any, position_texts: Mapping[str, str]) -> Array:
     """Joint positions of the rigid robot: first keyframe or default pose, with given angles replaced.
 
-    position_texts : {joint: text of its position [rad or m]}
+    position_texts : {joint: text of its position [rad or m], or with a unit}
 
     Raises ValueError for an unknown joint, or a position that is not a number or outside the joint's range.
     """
@@ -310,17 +313,18 @@ def make_robot_pose(robot_model: Any, position_texts: Mapping[str, str]) -> Arra
     for name, text in position_texts.items():
         if name not in known:
             raise ValueError(f"--pose {name}: no joint of the robot; allowed are {', '.join(known)}")
+        unit = coordinate_unit(robot_model, name)
         try:
-            value = float(text)
-        except ValueError:
-            raise ValueError(f"--pose {name} = {text!r} is not a number") from None
+            value = parse_number("pose", text, unit, unit, lower_bound=None)
+        except ValueError as error:
+            raise ValueError(str(error).replace("--pose", f"--pose {name}", 1)) from None
         joint = robot_model.joint(name).id
         low, high = robot_model.jnt_range[joint] if robot_model.jnt_limited[joint] else (-np.inf, np.inf)
-        if not (np.isfinite(value) and low <= value <= high):
-            allowed = f"[{low:g}, {high:g}]" if robot_model.jnt_limited[joint] else "(-inf, inf)"
+        if not low <= value <= high:
+            is_in_degrees = unit == "rad" and text[-1].isdigit() and low <= np.deg2rad(value) <= high
             raise ValueError(
-                f"--pose {name} = {text} {coordinate_unit(robot_model, name)} is outside {allowed} "
-                f"{coordinate_unit(robot_model, name)}"
+                f"--pose {name} = {value:g} {unit} is outside [{low:g}, {high:g}] {unit}"
+                + (f"; an angle in degrees is {name}={text}deg" if is_in_degrees else "")
             )
         pose[known[name]] = value
     return pose
