@@ -434,7 +434,7 @@ def test_refusals(words, line, tmp_path, capsys):
 
 
 def test_numbers_of_a_robot_may_have_units(tmp_path, capsys, few_poses):
-    words = ["--drive", "joint2=csg40100", "--pose", "joint2=40deg", "--payload", "500g"]
+    words = ["--drive", "joint2=csg40100", "--pose", "joint2=40deg", "--payload", "0.5kg"]
     said = made(capsys, ROBOT, tmp_path, *words)
     assert said["pose"]["joint2"] == pytest.approx(np.deg2rad(40.0))
     assert said["payload"] == 0.5
