@@ -111,6 +111,11 @@ def _run_ramp(args: argparse.Namespace) -> CommandResult:
     """Run an FMU along a load ramp, and print or write its outputs."""
     result = ramp.run_ramp(args.fmu, args.input, args.to, args.step, dict(args.settings))
     _print_messages(result.log_messages, args.input)
+    if args.to is not None and any("is outside [" in message for message in result.log_messages):
+        unit = result.variable_units[args.input]
+        print(
+            f"note: --to = {args.to:g} {unit} is beyond the range of the law; check its unit", file=sys.stderr
+        )
     result = _select_columns(result, args.input, args.columns)
     if args.csv:
         write_text(args.csv, result.format_time_series_csv())
@@ -267,3 +272,7 @@ def _draw_loops(
     right.set_ylim(0.0, 1.1 * size * float(np.max(stiffness)))
     if np.all(loss > 0.0):
         middle.set(xscale="log", yscale="log")
+        shown = np.unique(np.linspace(0, amplitude.size - 1, min(amplitude.size, 4)).round().astype(int))
+        ticks = (x_size * amplitude[shown]).tolist()
+        middle.set_xticks(ticks, [f"{tick:.3g}" for tick in ticks])
+        middle.set_xticks([], minor=True)

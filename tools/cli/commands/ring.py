@@ -70,6 +70,8 @@ def _run_resonance_simulation(args: argparse.Namespace) -> CommandResult:
     rows = [_resonance_row(point) for point in points]
     for message in dict.fromkeys(text for point in points for text in point.log_messages):
         print(message, file=sys.stderr)
+    for note in example.simplification_notes:
+        print(f"note: {note}", file=sys.stderr)
     table = _format_resonance_table(rows, example.load_unit)
     if args.csv:
         write_text(args.csv, table)

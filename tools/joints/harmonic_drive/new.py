@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from jointfmu.joints.harmonic_drive.friction import friction_limits, viscous_torque
-from jointfmu.quantity.units import CELSIUS_ZERO_IN_KELVIN
+from jointfmu.quantity.units import CELSIUS_ZERO_IN_KELVIN, unit_size
 
 from ...common.options import Option, format_option_flag
 from ...inputs.catalogue import SourcedNumber
@@ -288,7 +288,10 @@ def _make_joint_with_catalogue_law(
     if printed_angle:
         computed_angle, unit, text = facts["lost_motion"]
         relation = "below" if computed_angle < printed_angle.si_value else "above"
-        text += f"; {relation} {printed_angle.si_value:.4g} rad: {_source_without_brackets(printed_angle)}"
+        limit = (
+            f"{printed_angle.si_value:.4g} rad ({printed_angle.si_value / unit_size('arcmin'):.4g} arcmin)"
+        )
+        text += f"; {relation} {limit}: {_source_without_brackets(printed_angle)}"
         facts["lost_motion"] = (computed_angle, unit, text)
     if friction_numbers:
         facts["efficiency"] = (compute_rated_efficiency(file.values), "1", "at rated torque and 2000 rev/min")
