@@ -131,7 +131,7 @@ def _written(path, field):
     ("10,20,10,-1", r"line 5: pressure = -1e\+06 Pa is outside \[0, inf\)"),
     ("10,20,0,1", r"line 5: area = 0 m2 is outside \(0, inf\)"),
     ("10,0,10,1", r"line 5: is at the same place as line 4"),
-    ("10,20,10,0", r"line 5: has no pressure, as 1 of 4 nodes .*; state keep \(they just touch\)"),
+    ("10,20,10,0", r"line 5: has no pressure; 1 of the 4 nodes .* State keep \(at these nodes the sides"),
     ("10,20,10", r"line 5 has 3 columns, expected 4"),
 ])  # fmt: skip
 def test_csv_is_refused_with_the_line(tmp_path, row, message):
