@@ -175,7 +175,12 @@ def _simulate_paths(
             raise ValueError(f"{fmu_label}: unknown name {name!r}, allowed are {', '.join(settable)}")
         wanted = bool if variables[name].type == "Boolean" else float
         if not isinstance(value, wanted):
-            expected = "true or false" if wanted is bool else "a number"
+            expected = (
+                "true or false"
+                if wanted is bool
+                else f"a number; expected a number in {variables[name].unit or '1'} with a decimal point, "
+                "without its unit"
+            )
             raise ValueError(f"{fmu_label}: {name} = {value!r} is not {expected}")
     messages: list[str] = []
     rows: list[list[float]] = []

@@ -57,13 +57,11 @@ def add_command(command_parsers: SubParsers) -> None:
         sub,
         "--refine",
         int,
-        "number of meshes, each finer than the last, for a convergence study, 1 to "
-        f"{MAX_CONVERGENCE_STUDY_MESHES}",
+        f"convergence study: number of meshes, 1 to {MAX_CONVERGENCE_STUDY_MESHES}, each finer than the one "
+        "before, the second with --refinement",
         default=1,
     )
-    text = (
-        f"factor by which all elements are smaller, {MIN_MESH_REFINEMENT:g} to 4; below 1: coarser and faster"
-    )
+    text = f"factor that divides all element sizes, {MIN_MESH_REFINEMENT:g} to 4; below 1: coarser, faster"
     declare_argument(sub, "--refinement", float, text, "R", default=1.0)
 
 

@@ -109,7 +109,10 @@ def _declare_import(subcommand_parsers: SubParsers) -> None:
         step, "--moment", float, "bending moment about x in the result of --moment-file [N.m]", "M"
     )
     declare_argument(
-        step, "--moment-file", Path, "contact result of the same nodes under preload and --moment"
+        step,
+        "--moment-file",
+        Path,
+        "contact result at the same nodes, under the preload and the moment of --moment",
     )
     bodies.declare_body_arguments(step)
     step.set_defaults(options=OPTION_NAME_BY_ARGUMENT)
