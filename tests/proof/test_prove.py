@@ -26,6 +26,7 @@ from jointfmu_fmu_src.proof.series import parse_time_series_csv
 from jointfmu_fmu_src.proof.standard import REFERENCE_FILE_FOLDER
 from jointfmu_tools import cli
 from jointfmu_tools.run.proof.importers import SUPPORTED_FMI_VERSIONS as KNOWN
+from jointfmu_tools.run.proof.report import MAX_PRINTED_FAILURES
 from natives import VERSIONS
 from proofs import BOTH, ECOS, MEASURED, copy, other_manifest, proved, replaced
 from surroundings import Enter, environment, missing_package
@@ -296,6 +297,9 @@ def test_what_cannot_be_proved_is_refused_in_one_line(
     enter(missing_package("ecospy"))
     line = refused_line(capsys, "prove", native / "fmi2" / f"{NAME}.fmu", "--in", "ecos")
     assert "the package ecospy is missing" in line
+    enter(missing_package("libcosimpy"))  # its version of FMI is refused even if it is not installed
+    line = refused_line(capsys, "prove", native / "fmi3" / f"{NAME}.fmu", "--in", "libcosim")
+    assert "is of FMI 3.0, but libcosim takes only 2.0" in line
 
 
 def test_an_importer_whose_library_does_not_load_is_refused(
@@ -365,6 +369,10 @@ def test_a_changed_parameter_is_seen_though_references_were_changed_along(
     found = proved(capsys, path, "--against", str(own), status=1)
     assert found["misses"][0] == f"e starts at 0.3, {own} says 0.2"
     assert any(line.startswith("load ramp, co-simulation: ") for line in found["misses"])
+    assert cli.main(["prove", str(path), "--against", str(own)]) == 1
+    printed = [line for line in capsys.readouterr().out.splitlines() if line.startswith("missed: ")]
+    assert len(found["misses"]) > len(printed) == MAX_PRINTED_FAILURES + 1
+    assert printed[0] == f"missed: {found['misses'][0]}"
 
 
 def test_an_fmu_is_not_compared_with_the_file_of_another_joint(
