@@ -30,7 +30,7 @@ def add_command(command_parsers: SubParsers) -> None:
         first = any(name == kind.working_point[0] for kind in kinds)
         text = "; ".join(f"{kind.title}: {_describe_working_point_input(kind, name)}" for kind in kinds)
         text += (
-            ", one record of the joint for each value (default: no record)"
+            ", one record of the joint for each value (default: that of --params, and 9000 and 15000)"
             if first
             else f" (default: {kinds[0].variables[name].start:g})"
         )
