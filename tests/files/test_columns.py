@@ -96,7 +96,7 @@ def test_cells_in_quotes(tmp_path):
         ("load,angle [deg]\n1,2", r"column 'load' has no unit, expected e.g. load \[N\]"),
         (
             "load [ozf]\n1",
-            r"column 'load' has unit 'ozf', expected N, kN or another unit of the same quantity; convert",
+            r"column 'load' has unit 'ozf', allowed are N, kN or another unit of the same quantity; convert",
         ),
         ("load [N],Load [kN]\n1,2", r"column 'load' is given twice; state it once"),
         (f"{HEAD}", r"has 0 rows of numbers, at least 1 are needed"),

@@ -318,8 +318,8 @@ def _find_columns(
             places[name] = place, unit_size_in(unit, allowed_units[name]), unit
         except ValueError:
             raise ValueError(
-                f"{table_path}: column {name!r} has unit {unit!r}, expected {allowed} or another unit of the "
-                "same quantity; convert the column"
+                f"{table_path}: column {name!r} has unit {unit!r}, allowed are {allowed} or another unit "
+                "of the same quantity; convert the column"
             ) from None
     if not places:
         shown = ", ".join(cell.strip() for cell in heading_cells)[:80]
