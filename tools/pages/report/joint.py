@@ -290,7 +290,7 @@ def make_ramp_figure(load_history: LoadHistory) -> Figure:
     end, unit = _to_display_unit(load_history.model.ramp.end_value, ramped.unit)
     meaning = "; ".join(f"{name}: {doc}" for name, doc in docs.items() if name != ramped.name)
     text = (
-        f"{ramped.name} ({ramped.doc}) from 0 to {float(end):.4g} {unit}; all other inputs have their start "
+        f"{ramped.name} from 0 to {float(end):.4g} {unit}: {ramped.doc}. All other inputs have their start "
         f"values. Curves: {meaning}."
     )
     return Figure("Curves over the load", text, charts)
@@ -318,7 +318,7 @@ def make_loop_figure(load_history: LoadHistory, hysteresis_loops: HysteresisLoop
     ]
     inputs = {v.name: v.unit for v in load_history.model.inputs}
     settings = [
-        f"{name} = {value:g} {format_unit(inputs[name])}"
+        f"{name} = {' '.join(format_quantity(value, inputs[name], 5))}"
         for name, value in load_history.loop_inputs.items()
         if value
     ]

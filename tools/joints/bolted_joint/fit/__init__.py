@@ -45,7 +45,8 @@ FIT_PROCEDURES = (
         procedure_options=(
             Option(
                 "preload",
-                "preload of each bolt in the test of a bolted joint [N] (default: that of --params)",
+                "force of each bolt of a bolted joint at tightening [N], from which the embedding of "
+                "--params is subtracted (default: preload of --params)",
                 is_number=True,
             ),
             Option(
