@@ -64,14 +64,19 @@ def judge_joint_stiffness(
     """Compare the stiffness of a joint under loads with the estimate from roughness, and list warnings.
 
     joint_loads : values of `NominalPressureModel.load_variable` [SI]; None: the start value in the file, or,
-                  if
-                  it is zero, the default load. At the default load the stiffness is only compared with the
-                  estimate from roughness
+                  if it is zero, the default load. At the default load the stiffness is only compared with the
+                  estimate from roughness. With None, the upper end of the range in the file is also checked
+                  against the load capacity
     """
     kind = KINDS[parameter_file.joint]
     nominal = find_nominal_pressure_model(kind)
     if nominal is None or kind.extract_law(parameter_file.values) is None:
         return Plausibility(None, ())
+    capacity = nominal.load_capacity(parameter_file)
+    range_warnings = []
+    if joint_loads is None and (ends := parameter_file.ranges.get(f"inputs.{nominal.load_variable}")):
+        name = f"upper end of the range of {nominal.load_variable}"
+        range_warnings = warn_overload(name, ends[1], capacity)
     if joint_loads is None and parameter_file.start_value(nominal.load_variable) > 0.0:
         joint_loads = [parameter_file.start_value(nominal.load_variable)]
     law, h, limits = (
@@ -90,10 +95,8 @@ def judge_joint_stiffness(
         [nominal.joint_to_law_stiffness_ratio(parameter_file.values, load) for load in joint_loads],
         limits,
     )
-    capacity = nominal.load_capacity(parameter_file)
-    return judgement.prepend_warnings(
-        warn_overload(nominal.load_variable, max(joint_loads, default=0.0), capacity)
-    )
+    overload = warn_overload(nominal.load_variable, max(joint_loads, default=0.0), capacity)
+    return judgement.prepend_warnings(overload or range_warnings)
 
 
 def warn_missing_members(parameter_file: ParameterFile) -> list[str]:
@@ -107,13 +110,11 @@ def warn_missing_members(parameter_file: ParameterFile) -> list[str]:
     ]
 
 
-def warn_overload(
-    load_variable: str, joint_load: float, load_capacity: tuple[float, str] | None
-) -> list[str]:
+def warn_overload(load_name: str, joint_load: float, load_capacity: tuple[float, str] | None) -> list[str]:
     """List a warning if a load [N] is above the load capacity; otherwise the list is empty.
 
     load_capacity : (largest load [N], name of this limit), or None if not known
     """
     if load_capacity is None or joint_load <= load_capacity[0]:
         return []
-    return [f"{load_variable} = {joint_load:g} N is above {load_capacity[0]:.4g} N, {load_capacity[1]}"]
+    return [f"{load_name} = {joint_load:g} N is above {load_capacity[0]:.4g} N, {load_capacity[1]}"]

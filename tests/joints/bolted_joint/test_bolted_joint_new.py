@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -272,9 +273,9 @@ def test_a_stated_preload_scatters_if_its_tightening_is_stated(capsys):
 def test_the_yield_strength_limits_the_torque(capsys):
     words = [*PLATE, *FACES, *KNOWN, "--property-class", "8.8", "--torque"]
     found = made(capsys, *words, "84")
-    assert found["warnings"] == []
+    assert [line[:12] for line in found["warnings"]] == ["preload_high", "upper end of"]
     assert found["facts"]["yield_utilisation"]["value"] == pytest.approx(0.9, rel=0.01)
-    (line,) = made(capsys, *words, "90")["warnings"]
+    line = made(capsys, *words, "90")["warnings"][0]
     assert (
         "uses 97% of the yield strength of M12-8.8 in tightening (VDI 2230, von Mises), allowed are" in line
     )
@@ -284,6 +285,26 @@ def test_the_yield_strength_limits_the_torque(capsys):
         assert refused_line(capsys, "new", "bolted-joint", *words, torque).rstrip().endswith(advice)
     line = refused_line(capsys, "new", "bolted-joint", *PLATE, *FACES, "--torque", "840")
     assert "times the yield strength of M12-12.9, the strongest class" in line
+
+
+def test_the_upper_end_of_the_preload_is_checked_as_a_preload(capsys):
+    """The upper end comes from the smallest friction: its utilisation is that of this friction, if stated."""
+    words = [*PLATE, *FACES, *TORQUE, "--property-class", "12.9"]
+    found = facts_of(capsys, *words)
+    least = facts_of(capsys, *words, "--thread-friction", "0.08", "--head-friction", "0.08")
+    assert found["preload_high"] == pytest.approx(least["preload"])
+    assert found["yield_utilisation_high"] == pytest.approx(least["yield_utilisation"])
+    # scatter alone: the friction is that of the preload, so the utilisation is proportional to the force
+    angle = facts_of(capsys, *words, "--tightening", "angle")
+    assert angle["yield_utilisation_high"] / angle["yield_utilisation"] == pytest.approx(
+        angle["preload_high"] / angle["preload"]
+    )
+    words = [*words[:-1], "8.8", "--torque"]
+    line, proof = made(capsys, *words, "84")["warnings"]
+    assert "above 4.887e+04 N, the proof load of M12-8.8" in proof  # 580 MPa x 84.3 mm2
+    safe = re.search(r"at most --torque ([\d.]+)$", line)[1]
+    assert made(capsys, *words, safe)["warnings"] == []
+    assert made(capsys, *words, str(1.03 * float(safe)))["warnings"]
 
 
 def test_fine_threads(capsys):

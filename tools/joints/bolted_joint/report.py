@@ -22,7 +22,7 @@ from jointfmu.quantity import Array
 from ...common.shown import format_quantity
 from ...pages.report.figure import ComparisonRow, Figure
 from ...pages.report.load_history import LoadHistory
-from .field import PlaneLayout
+from .field import NOMINAL_PRESSURE, PlaneLayout
 from .gross_slip import PRELOAD_ENTRY_NAME, compute_friction_results, compute_preload_results
 from .picture import draw_plan, draw_section
 from .tensile_load import MAX_BOLT_OVER_TIGHTENING_FORCE, compute_bolt_forces
@@ -107,9 +107,12 @@ def make_preload_figures(load_history: LoadHistory) -> list[Figure]:
     table: list[tuple[str, ...]] = [
         ("preload", "stiffness along z", "stiffness along x", "gross slip at", "interface opens at")
     ]
+    capacity = NOMINAL_PRESSURE.load_capacity(file)
     for row in sorted(compute_preload_results(file)):
         values = zip(row, ("N", "N/m", "N/m", "N", "N"), strict=True)
-        table.append(tuple(_format_in_display_unit(value, unit) for value, unit in values))
+        preload, *cells = (_format_in_display_unit(value, unit) for value, unit in values)
+        excess = " (above the proof load)" if capacity and row.preload > capacity[0] else ""
+        table.append((f"{preload}{excess}", *cells))
     text = (
         f"The preload is uncertain: {file.sources[PRELOAD_ENTRY_NAME]}. Embedding takes "
         f"{_format_in_display_unit(file.values.embedding, 'N')} of each preload. The stiffness is that of "

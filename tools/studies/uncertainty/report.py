@@ -19,12 +19,19 @@ MAX_PRINTED_LOADS = 6
 
 
 def select_table_loads(uncertainty_study: UncertaintyStudy) -> list[float]:
-    """Select the loads above zero of the ramp that the printed table shows."""
-    return [
-        float(load)
-        for load in uncertainty_study.loads[_select_table_indices(uncertainty_study.loads)]
-        if load > 0.0
-    ]
+    """Select the loads above zero of the ramp that the printed table shows.
+
+    If a single load is uncertain, the result also has the upper end of its interval.
+    """
+    loads = uncertainty_study.loads[_select_table_indices(uncertainty_study.loads)].tolist()
+    if len(loads) == 1:
+        loads += [
+            parameter.support_interval[1]
+            for parameter in uncertainty_study.uncertain_parameters
+            if parameter.name == uncertainty_study.ramped_input.name
+            and np.isfinite(parameter.support_interval[1])
+        ]
+    return [load for load in loads if load > 0.0]
 
 
 def _select_table_indices(ramp_values: Any) -> Any:
