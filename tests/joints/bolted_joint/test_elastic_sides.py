@@ -20,9 +20,9 @@ from jointfmu_tools.inputs.fields.joint_parameters import insert_pressure_field
 from jointfmu_tools.inputs.fields.nodal_result import ContactPressureField
 from jointfmu_tools.inputs.fitting import branches
 from jointfmu_tools.joints.bolted_joint import report
+from jointfmu_tools.joints.bolted_joint.external_load import compute_bolt_forces
 from jointfmu_tools.joints.bolted_joint.fit import loop
 from jointfmu_tools.joints.bolted_joint.fit import preload as over_preload
-from jointfmu_tools.joints.bolted_joint.tensile_load import compute_bolt_forces
 from jointfmu_tools.pages.report.load_history import LoadHistory
 from jointfmu_tools.studies.uncertainty import propagate
 from jointfmu_tools.studies.uncertainty.problem import define_joint_study

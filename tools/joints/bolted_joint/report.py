@@ -22,10 +22,15 @@ from jointfmu.quantity import Array
 from ...common.shown import format_quantity
 from ...pages.report.figure import ComparisonRow, Figure
 from ...pages.report.load_history import LoadHistory
+from .external_load import (
+    MAX_BOLT_OVER_TIGHTENING_FORCE,
+    OPEN_PRESSURE_RATIO,
+    compute_bolt_forces,
+    compute_opening_moment,
+)
 from .field import NOMINAL_PRESSURE, PlaneLayout
 from .gross_slip import PRELOAD_ENTRY_NAME, compute_friction_results, compute_preload_results
 from .picture import draw_plan, draw_section
-from .tensile_load import MAX_BOLT_OVER_TIGHTENING_FORCE, compute_bolt_forces
 
 MAX_PLOTTED_OVER_OPENING_LOAD = 1.3
 """Largest plotted tensile force over the opening load of the interface [1]."""
@@ -153,13 +158,29 @@ def make_stiffness_figures(load_history: LoadHistory) -> list[Figure]:
     )
     text = _stiffness_text(compliances, remaining_preload, moment) + (
         f" A force of {_format_in_display_unit(opening, 'N')} along z opens the interface {location} (linear "
-        "estimate with these stiffnesses); a joint that peels opens at a lower load, as the plot shows. The "
+        "estimate with these stiffnesses); a joint that peels opens at a lower load, as the plot shows. "
+        f"{_opening_moment_text(spring, preload, moment)}The "
         f"whole interface slips at {_format_in_display_unit(limit, 'N')} along x or y; slip begins at the "
         "edges at a far lower load, and its loss is under Loops. The plot shows a tensile force up to "
         f"{MAX_PLOTTED_OVER_OPENING_LOAD:g} times the opening load, free in the other five motions, and up "
         f"to {MAX_BOLT_OVER_TIGHTENING_FORCE:g} times the force of a bolt at tightening."
     )
     return [Figure("The complete joint", text, [panel], table_rows=_stiffness_rows(compliances))]
+
+
+def _opening_moment_text(joint_spring: BoltedJointSpring, preload: float, bending_moment: float) -> str:
+    """Sentence with the moments about x and y at which the joint starts to open; empty if none is found."""
+    moments = [
+        f"{_format_in_display_unit(found, 'N.m')} about {axis}"
+        for i, axis in enumerate("xy")
+        if (found := compute_opening_moment(joint_spring, preload, bending_moment, i)) is not None
+    ]
+    if not moments:
+        return ""
+    return (
+        f"A moment of {' or '.join(moments)} opens the first point of the contact: its pressure falls to "
+        f"{OPEN_PRESSURE_RATIO:.0%} of that at tightening. "
+    )
 
 
 def _format_in_display_unit(value_in_si: float, si_unit: str) -> str:
