@@ -28,6 +28,7 @@ from jointfmu_tools.joints.bolted_joint.new import (
     STANDARD_WASHER_OPTION,
     TIGHTENING_METHODS,
     layout,
+    plate,
 )
 from jointfmu_tools.joints.bolted_joint.new.plate import read_drawing
 from jointfmu_tools.joints.bolted_joint.report import make_preload_figures
@@ -346,6 +347,17 @@ def test_a_preload_range_reaches_report_and_study(capsys, tmp_path):
     bare = replace(file, ranges={"inputs.preload": (1e3, 50e3)})
     with pytest.raises(ValueError, match="the joint may lose all of it"):
         define_joint_study(bare, {}, None, 3)
+
+
+def test_a_column_of_the_bed_thickness_tilts_as_a_large_bed():
+    """Rotational stiffness of a rigid disc on a half-space, 8 G a^3/(3 (1 - nu)), is E I/T of the column."""
+    a, nu = 0.05, 0.3
+    side = a * math.sqrt(math.pi)  # a square of the same area
+    pattern = SimpleNamespace(length=side, width=side)
+    thickness = plate._compute_bed_thickness(pattern)["bed_thickness"][0]
+    E = 210e9
+    half_space = 8.0 * E / (2.0 * (1.0 + nu)) * a**3 / (3.0 * (1.0 - nu))
+    assert E * math.pi * a**4 / 4.0 / thickness == pytest.approx(half_space, rel=0.02)  # 0.3: one digit
 
 
 # Washers

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from clients import needs
+from jointfmu_tools.joints.bolted_joint import report
 from jointfmu_tools.joints.bolted_joint.external_load import (
     OPEN_PRESSURE_RATIO,
     OPENING_MOMENT_TOLERANCE,
@@ -75,3 +76,10 @@ def test_the_complete_joint_has_this_moment_alone(elastic_joint):
     assert np.min(ratios) == pytest.approx(OPEN_PRESSURE_RATIO, rel=20.0 * OPENING_MOMENT_TOLERANCE)
     still = spring.evaluate(preload, 0.0, (0.0,) * 3, (0.0,) * 3)
     assert 0.5 < out["K_rx"] / still["K_rx"] < 1.0  # it begins to open: not much is lost yet
+
+
+def test_bolts_that_differ_in_the_added_force_are_not_called_equal():
+    """Two bolts share a curve if the forces that the load adds are equal, however large the preload is."""
+    added = np.array([1.0, 1.02, 1.0, 1.02 + 1e-5])  # 2 % apart: 0.1 % of the whole force
+    forces = 20e3 + np.outer(added, np.linspace(0.0, 1e3, 5))
+    assert report._group_equal_bolts(forces) == [[0, 2], [1, 3]]

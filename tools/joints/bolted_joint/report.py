@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from jointfmu_fmu_src.joint_parts.chart import Panel, Series
 
+from jointfmu.joints.bolted_joint.bodies import MODAL_DISPLACEMENT_DECIMALS
 from jointfmu.joints.bolted_joint.compliances import Compliances
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import (
@@ -36,8 +37,9 @@ MAX_PLOTTED_OVER_OPENING_LOAD = 1.3
 """Largest plotted tensile force over the opening load of the interface [1]."""
 MAX_BOLT_SHARE_EXCESS_OVER_MEAN = 0.05
 """Excess of the largest bolt share over the mean share [1], up to which bolts count as equally loaded."""
-EQUAL_BOLT_FORCE_TOLERANCE = 1e-3
-"""Difference of two bolt forces over the largest one [1], up to which they share a curve."""
+EQUAL_BOLT_FORCE_TOLERANCE = 10.0 * 10.0**-MODAL_DISPLACEMENT_DECIMALS
+"""Difference of two bolt forces over the largest change of a bolt force since tightening [1], up to which
+they share a curve: a few times the rounding of the modal displacements."""
 
 
 def make_bolted_joint_figures(load_history: LoadHistory) -> list[Figure]:
@@ -222,18 +224,16 @@ def _stiffness_text(joint_compliances: Compliances, remaining_preload: float, be
     )
 
 
-def _group_equal_rows(columns_of_numbers: Array) -> list[list[int]]:
-    """Group the rows of a table of numbers: lists of the indices of rows with equal values.
+def _group_equal_bolts(bolt_forces: Array) -> list[list[int]]:
+    """Group the bolts with equal forces (bolts, loads) [N], the first load at tightening: lists of indices.
 
-    The groups are in the order of their first rows.
+    The groups are in the order of their first bolts.
     """
     groups: list[list[int]] = []
-    scale = float(np.max(np.abs(columns_of_numbers), initial=0.0))
-    for j, row in enumerate(columns_of_numbers):
+    scale = float(np.max(np.abs(bolt_forces - bolt_forces[:, :1]), initial=0.0))
+    for j, row in enumerate(bolt_forces):
         for group in groups:
-            if np.allclose(
-                row, columns_of_numbers[group[0]], rtol=0.0, atol=EQUAL_BOLT_FORCE_TOLERANCE * scale
-            ):
+            if np.allclose(row, bolt_forces[group[0]], rtol=0.0, atol=EQUAL_BOLT_FORCE_TOLERANCE * scale):
                 group.append(j)
                 break
         else:
@@ -255,7 +255,7 @@ def _bolt_force_chart(
     columns = 1e-3 * compute_bolt_forces(joint_spring, preload, bending_moment, pulls).T
     series = [
         Series(_name_bolts(bolts), 1e-3 * pulls[: len(columns[bolts[0]])], columns[bolts[0]])
-        for bolts in _group_equal_rows(columns)
+        for bolts in _group_equal_bolts(columns)
     ]
     return Panel(
         "Bolt forces under a tensile force along z", "tensile force along z [kN]", "bolt force [kN]", series
