@@ -339,6 +339,7 @@ def test_a_preload_range_reaches_report_and_study(capsys, tmp_path):
     assert (load.name, load.support_interval) == (
         "preload", pytest.approx((facts["preload_low"] - left, facts["preload_high"] - left)),
     )  # fmt: skip
+    assert study.loads == pytest.approx([facts["preload"] - left])  # nominal: that of the file
     assert "opening_load" in study.output_units
     low, high = file.ranges["inputs.preload"]  # of an FMU, whose input is what is tightened
     assert resolve_interval_setting("preload", "interval", file) == f"{low!r}..{high!r}"

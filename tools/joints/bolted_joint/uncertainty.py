@@ -114,7 +114,8 @@ UNCERTAINTY_CURVES = LoadCurves(
             Variable(
                 "loss_factor",
                 "1",
-                f"of a loop under a shear of {LOOP_SHEAR_OVER_BOLT_FORCE:g} times the bolts' force",
+                f"of a loop under a shear of {LOOP_SHEAR_OVER_BOLT_FORCE:g} times the force of all bolts; "
+                "jointfmu new prints it at another shear force",
                 0.1,
             ),
             loss_factor,

@@ -1,5 +1,6 @@
 """Results of an uncertainty propagation as table, CSV, JSON and plots."""
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -144,10 +145,15 @@ def format_study_table(
     if sensitivity is not None:
         lines += _format_sobol_table(uncertainty_study, sensitivity, uncertainty_bands.nonzero_outputs)
     varied = ", ".join(
-        f"{parameter.name} = {parameter.distribution_text}"
+        f"{parameter.name} = {_round_numbers(parameter.distribution_text)}"
         for parameter in uncertainty_study.uncertain_parameters
     )
     lines.append(f"over {uncertainty_study.ramped_input.name}: {uncertainty_study.ramped_input.doc}")
+    lines += [
+        f"{name}: {meaning}"
+        for name, meaning in uncertainty_study.derived_meanings.items()
+        if name in uncertainty_bands.nonzero_outputs
+    ]
     lines.append(
         f"varied: {varied}{'' if uncertainty_bands.has_output_scatter else ': no output depends on it'}"
     )
@@ -165,6 +171,11 @@ def format_study_table(
         )
         lines.append(f"the first refused: {example}: {uncertainty_bands.refused_samples.refusal_message}")
     return "\n".join(lines)
+
+
+def _round_numbers(distribution_text: str) -> str:
+    """Text of a distribution with its long decimal numbers rounded to six digits."""
+    return re.sub(r"\d+\.\d{6,}(?:e[-+]?\d+)?", lambda number: f"{float(number[0]):.6g}", distribution_text)
 
 
 def _format_sobol_table(
