@@ -25,7 +25,7 @@ from .interface_table import add_interface_table
 from .part import DrawingOptions, ParameterSheet
 from .quantities import StatedNumber, parse_quantity
 from .reading import expand_to_sides, parse_number
-from .tables import MaterialOrFinish, find_table_row
+from .tables import MaterialOrFinish, find_table_row, read_material_or_finish_table
 
 FACE_OPTIONS = (
     Option(
@@ -132,7 +132,8 @@ class FaceRoughness(NamedTuple):
     height_source             : source of the height
     stated_heights            : {key of the section [roughness] without the number of the side: height [m]}
     is_from_finish            : whether a finish alone gives the height
-    skewness_range            : smallest and largest skewness of the finish [1]; None: no finish
+    skewness_range            : smallest and largest skewness [1] of the finish, or of all finishes if none is
+                                stated; None: the heights are those of a scan
     """
 
     Rq: float
@@ -268,7 +269,8 @@ def _add_roughness_law_gamma(
 ) -> None:
     """Add gamma [1] of the law stiffness = pressure/(gamma h) to a parameter sheet; h: combined rms height.
 
-    The value holds for Gaussian heights. Its range follows from the skewness of the finishes.
+    The value holds for Gaussian heights. Its range follows from the skewness of the finishes, and contains the
+    value: honed faces, for example, have negative skewness only.
     """
     text = "boundary elements: 0.40 to 0.48 (docs/validity.md)"
     ends = [face.skewness_range for face in faces if face.skewness_range]
@@ -281,7 +283,10 @@ def _add_roughness_law_gamma(
     )
     text += f"; range: skewness {low:.2g} to {high:.2g} of both sides together (docs/surfaces_explanation.md)"
     parameter_sheet.add_parameter("gamma", roughness.PERSSON_GAMMA, "estimate", text)
-    limits = (roughness.PERSSON_GAMMA * lognormal_tail_over_rms_height(skewness) for skewness in (low, high))
+    limits = [
+        roughness.PERSSON_GAMMA * lognormal_tail_over_rms_height(skewness)
+        for skewness in (min(low, 0.0), max(high, 0.0))
+    ]
     parameter_sheet.set_parameter_range("gamma", *limits)
 
 
@@ -296,8 +301,8 @@ def warn_unknown_height_distribution(drawing_options: DrawingOptions) -> list[st
         return []
     return [
         f"{stated[0]} alone does not state the height distribution: with plateaus (ground, honed or lapped "
-        "faces) the interface is up to several times stiffer; state --finish for a range, or use measured "
-        "heights (jointfmu surface)"
+        "faces) the interface is up to several times stiffer; the range of gamma in the file is that of all "
+        "finishes; state --finish for a narrower range, or use measured heights (jointfmu surface)"
     ]
 
 
@@ -400,11 +405,13 @@ def _roughness_from_finish(finish_name: str) -> FaceRoughness:
     )
 
 
-def _skewness_limits(surface_finish: MaterialOrFinish) -> tuple[float, float]:
-    """Smallest and largest skewness of the heights of a finish [1]."""
-    return surface_finish.sourced_numbers["skewness_low"].si_value, surface_finish.sourced_numbers[
-        "skewness_high"
-    ].si_value
+def _skewness_limits(*surface_finishes: MaterialOrFinish) -> tuple[float, float]:
+    """Smallest and largest skewness of the heights [1] that one of the finishes may have."""
+    low, high = (
+        [finish.sourced_numbers[column].si_value for finish in surface_finishes]
+        for column in ("skewness_low", "skewness_high")
+    )
+    return min(low), max(high)
 
 
 def _roughness_from_stated_height(
@@ -431,7 +438,9 @@ def _roughness_from_stated_height(
     Ra = Rq / roughness.RQ_OVER_RA
     Rz = stated.stated_value if roughness_name == "Rz" else RZ_OVER_RA * Ra
     wave = _cut_off_wavelength(Ra)
-    shape = _skewness_limits(surface_finish) if surface_finish else None
+    shape = _skewness_limits(
+        *([surface_finish] if surface_finish else read_material_or_finish_table("finishes").values())
+    )
     return FaceRoughness(
         Rq, Rq_low, Rq_high, Rz, slope, hurst, wave, text, {key: height.stated_value}, skewness_range=shape
     )
