@@ -677,7 +677,7 @@ def test_stated_ranges_are_in_the_file(capsys, tmp_path):
         (["--bolts", "M12"], "--at LxW for one bolt: expected the number of --bolts, as in 4xM12"),
         (["--mu", "15"], "--mu = '15' is outside (0, 2]: coefficient of friction of metals"),
         (["--at", "220x60"], "bolt 1 at (-110, -30) mm is not inside the plate"),
-        (["--at", "190x60"], "is not inside the plate; allowed are |x| < 0.09325 m"),
+        (["--at", "190x60"], "is not inside the plate; allowed are |x| < 93.25 mm"),
         (["--at", "10x60"], "the holes of bolts 1 and 2 overlap"),
         (["--at", "0,0", "10,10"], "--at has 2 positions, expected 4: one for each of --bolts"),
         (["--at", "160x60", "80x30"], "expected one LxW, or the position X,Y of each bolt"),
@@ -712,6 +712,8 @@ def test_stated_ranges_are_in_the_file(capsys, tmp_path):
         (["--bolts", "4xM12x1"], "allowed pitches of M12 are 1.75, 1.5, 1.25 mm"),
         (["--preload", "nan"], "--preload = 'nan' is not a number"),
         (["--preload", "2kN"], "embedding takes 2643 N, the whole preload of 2000 N"),
+        (["--torque", "45Ncm"], "N by --torque = '45Ncm', which is 0.45 N.m: state a larger --torque"),
+        (["--material", "castiron"], "did you mean cast iron?"),
         (["--embedding", "-1"], "--embedding = '-1' is outside [0, inf) N: preload loss of a bolt"),
         (["--material", "unobtainium"], "material 'unobtainium' is unknown, allowed are steel,"),
         (["--material", "steel", "steel", "steel"], "--material has 3 values"),
@@ -742,6 +744,20 @@ def test_a_roughness_must_be_stated(capsys):
 def test_places_must_be_stated(capsys):
     words = ["--plate", "200x100", "--bolts", "4xM12", "--grip", "40", *FACES]
     assert "the positions of 4 bolts are missing" in refused_line(capsys, "new", "bolted-joint", *words)
+
+
+def test_a_friction_of_no_machined_face_is_warned_of(capsys):
+    (line,) = made(capsys, *PLATE, *FACES, *LOAD, "--mu", "1.5")["warnings"]
+    assert line.startswith("mu = 1.5 is above 0.8")
+    assert made(capsys, *PLATE, *FACES, *LOAD, "--mu", "0.1..0.8")["warnings"] == []
+
+
+def test_underscores_in_names_of_materials(capsys):
+    found = [
+        made(capsys, *PLATE, "--material", name, "--Ra", "0.8", *LOAD)["parameters"]
+        for name in ("cast_iron", "Grauguss", "cast iron")
+    ]
+    assert found[0] == found[1] == found[2]
 
 
 def test_a_preload_no_bolt_bears_is_warned_of(capsys):

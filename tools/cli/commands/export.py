@@ -61,8 +61,8 @@ def add_command(command_parsers: SubParsers) -> None:
         help="springs: stiffness matrix of the complete joint between two nodes, or, with rigid sides or "
         "--interface, springs and dashpots between node pairs "
         f"({', '.join(KINDS[joint].title for joint in with_springs)}); contact: pressure over overclosure; "
-        f"curve: load over displacement of the complete joint; for {', '.join(ROBOT_FORMATS)}: parameter "
-        "file of a drive or its name in the catalogue",
+        "curve: load over displacement, of a bolted joint without its members; "
+        f"for {', '.join(ROBOT_FORMATS)}: parameter file of a drive or its name in the catalogue",
     )
     joint = export.add_mutually_exclusive_group()
     declare_argument(joint, "--params", Path, "parameter file of the joint (TOML), in place of --joint")
@@ -249,14 +249,11 @@ def _create_export(args: argparse.Namespace, parameter_file: ParameterFile) -> "
     if args.what == "contact":
         return writing.export_contact(args.form, parameter_file, units, args.error)
     state = _read_working_point(args, parameter_file.joint)
+    if state is None and (args.what == "curve" or _exports_complete_joint(args, parameter_file)):
+        state = _start_working_point(parameter_file)
     if args.what == "curve":
         return writing.export_curve(args.form, parameter_file, state, units, error)
     if _exports_complete_joint(args, parameter_file):
-        if state is None:
-            available = exports.load_joint_exports(parameter_file.joint)
-            assert available.working_point_class is not None
-            values = {name: parameter_file.start_value(name) for name in available.working_point}
-            state = available.working_point_class(**values)
         for name in ("node_1", "node_2"):
             if not np.all(np.isfinite(getattr(args, name) or _DEFAULT_NODE_POSITION)):
                 raise ValueError(
@@ -291,6 +288,15 @@ def _read_working_point(args: argparse.Namespace, joint_name: str) -> Any:
     return available.working_point_class(**{n: value for n, value in values.items() if value is not None})
 
 
+def _start_working_point(parameter_file: ParameterFile) -> Any:
+    """Working point of the joint by the start values of its inputs; None if its kind has no working point."""
+    available = exports.load_joint_exports(parameter_file.joint)
+    if available.working_point_class is None:
+        return None
+    values = {name: parameter_file.start_value(name) for name in available.working_point}
+    return available.working_point_class(**values)
+
+
 def _refuse_unused_options(args: argparse.Namespace, unused_options: Mapping[str, str]) -> None:
     """Raise ValueError if the user sets an option that has no effect.
 
@@ -301,8 +307,9 @@ def _refuse_unused_options(args: argparse.Namespace, unused_options: Mapping[str
             raise ValueError(f"{format_option_flag(name)} has no effect for {what}")
 
 
-def _check_working_point(args: argparse.Namespace, joint_name: str) -> None:
+def _check_working_point(args: argparse.Namespace, parameter_file: ParameterFile) -> None:
     """Raise ValueError if a working point is set but not used, or if a required one is missing."""
+    joint_name = parameter_file.joint
     used = {} if args.what == "contact" else exports.load_joint_exports(joint_name).working_point
     _refuse_unused_options(
         args,
@@ -316,7 +323,7 @@ def _check_working_point(args: argparse.Namespace, joint_name: str) -> None:
     first, text = next(iter(used.items()), ("", ""))
     if stated and first not in stated:
         raise ValueError(f"{format_option_flag(stated[0])} needs {format_option_flag(first)}, {text}")
-    if args.what == "curve" and first and not stated:
+    if args.what == "curve" and first and not stated and not parameter_file.start_value(first) > 0.0:
         raise ValueError(f"the curve of a {joint_name} needs {format_option_flag(first)}, {text}")
 
 
@@ -326,7 +333,7 @@ def _check_options(args: argparse.Namespace, parameter_file: ParameterFile) -> N
     Raises ValueError if one has no effect, is missing or is out of range.
     """
     exports.require_export(parameter_file.joint, args.what)
-    _check_working_point(args, parameter_file.joint)
+    _check_working_point(args, parameter_file)
     node_options = ("node_1", "node_2")
     if args.what != "springs":
         names = ("nodes", "first", "normal", "interface", *node_options)

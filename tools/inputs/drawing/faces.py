@@ -88,7 +88,8 @@ FACE_OPTIONS = (
     ),
     Option(
         "mu",
-        "coefficient of friction [1], or its range as in 0.1..0.3 (default: 0.15, with the range 0.1 to 0.3)",
+        "coefficient of friction [1], or its range as in 0.1..0.3, whose middle is then the value (default: "
+        "0.15, with the range 0.1 to 0.3)",
     ),
 )
 """Options of every joint with rough faces."""
@@ -98,6 +99,9 @@ DEFAULT_MU, DEFAULT_MU_LIMITS = 0.15, (0.1, 0.3)
 """Coefficient of friction if the drawing states none, and its range [1]."""
 DEFAULT_MU_SOURCE = "usual value of dry machined metal, not measured; VDI 2230, Table A6: 0.1 to 0.3"
 """Source text of the coefficient of friction, if none is stated."""
+MAX_USUAL_MU = 0.8
+"""Coefficient of friction [1] above which a stated value is doubtful: clean pairs of the same metal, without
+oxide or oil, have 0.8 to 1.5."""
 DEFAULT_RMS_SLOPE = 0.1
 """Rms slope [1] of a surface if only its height is known."""
 DEFAULT_HURST_EXPONENT = 0.8
@@ -235,7 +239,10 @@ def _add_roughness(
     texts = "; ".join(f"side {i + 1}: {face.height_source}" for i, face in enumerate(faces))
     spread = f"; {low * 1e6:.3g} to {high * 1e6:.3g} um with the ranges of the heights" if high > low else ""
     parameter_sheet.add_parameter(
-        "h", h, "estimate" if high > low else "derived", f"sqrt(Rq1^2 + Rq2^2), Rq = 1.25 Ra; {texts}{spread}"
+        "h",
+        h,
+        "estimate" if high > low else "derived",
+        f"sqrt(Rq1^2 + Rq2^2), Rq = {roughness.RQ_OVER_RA:.4g} Ra; {texts}{spread}",
     )
     if high > low and not any(face.is_from_finish for face in faces):
         parameter_sheet.set_parameter_range("h", low, high)
@@ -269,8 +276,8 @@ def _add_roughness_law_gamma(
 ) -> None:
     """Add gamma [1] of the law stiffness = pressure/(gamma h) to a parameter sheet; h: combined rms height.
 
-    The value holds for Gaussian heights. Its range follows from the skewness of the finishes, and contains the
-    value: honed faces, for example, have negative skewness only.
+    The value holds for Gaussian heights. Its range follows from the skewness of the finishes, and contains
+    the value: honed faces, for example, have negative skewness only.
     """
     text = "boundary elements: 0.40 to 0.48 (docs/validity.md)"
     ends = [face.skewness_range for face in faces if face.skewness_range]
@@ -303,6 +310,20 @@ def warn_unknown_height_distribution(drawing_options: DrawingOptions) -> list[st
         f"{stated[0]} alone does not state the height distribution: with plateaus (ground, honed or lapped "
         "faces) the interface is up to several times stiffer; the range of gamma in the file is that of all "
         "finishes; state --finish for a narrower range, or use measured heights (jointfmu surface)"
+    ]
+
+
+def warn_unusual_friction(drawing_options: DrawingOptions) -> list[str]:
+    """List a warning if the stated coefficient of friction is larger than that of machined faces in air."""
+    if drawing_options.get("mu") is None:
+        return []
+    mu = parse_quantity("mu", drawing_options["mu"]).upper_limit
+    if mu <= MAX_USUAL_MU:
+        return []
+    low, high = DEFAULT_MU_LIMITS
+    return [
+        f"mu = {mu:g} is above {MAX_USUAL_MU:g}, which only clean pairs of the same metal exceed; dry "
+        f"machined metal has {low:g} to {high:g} (VDI 2230, Table A6), and the slip force is proportional to mu"
     ]
 
 

@@ -215,9 +215,10 @@ def _stiffness_text(joint_compliances: Compliances, remaining_preload: float, be
         + (f" with a moment of {bending_moment:g} N m" if bending_moment else "")
         + ", one at a time with the other five fixed. The stiffness of the complete "
         "joint is that of the FMU. The last three columns are shares of its compliance, by stored energy. "
-        "Members are a spring in series with interface and bolts; interface alone and bolts alone are "
-        f"between rigid sides. The interface has {share[2]:.1%} of the compliance along z and at most "
-        f"{largest:.1%} in any direction: {effect}. The bolts carry "
+        "Members is the stiffness of the complete joint divided by the share of the members; interface "
+        "alone and bolts alone are between rigid sides. So the columns do not add up to the complete joint: "
+        f"deforming members load the interface unevenly. The interface has {share[2]:.1%} of the compliance "
+        f"along z and at most {largest:.1%} in any direction: {effect}. The bolts carry "
         f"{joint_compliances.joint_load_factor:.3f} of a force along z (load factor n Phi_K of VDI 2230), "
         "with the other motions free; where the interface is open they carry the full force, as the plot "
         "shows."

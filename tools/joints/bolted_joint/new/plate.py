@@ -153,9 +153,14 @@ def read_drawing(drawing_options: DrawingOptions) -> DrawnJoint:
     tightening.add_to_sheet(sheet)
     preload = tightening.preload_force
     if not loss < preload:
+        cause, remedy = "", "--preload"
+        if drawing_options["torque"] is not None:
+            torque = parse_quantity("torque", drawing_options["torque"]).stated_value
+            cause = f" by --torque = {drawing_options['torque']!r}, which is {torque:.4g} N.m"
+            remedy = "--torque"
         raise ValueError(
-            f"embedding takes {loss:.4g} N, the whole preload of {preload:.4g} N: state a smaller "
-            "--embedding or a larger --preload"
+            f"embedding takes {loss:.4g} N, the whole preload of {preload:.4g} N{cause}: state a larger "
+            f"{remedy} or a smaller --embedding"
         )
     for choice in ("critical_area", "spot_stiffness"):
         default = {"critical_area": "continuity", "spot_stiffness": "hertz"}[choice]

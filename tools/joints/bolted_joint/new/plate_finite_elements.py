@@ -332,7 +332,7 @@ def _compute_stiffness_results(
         members[f"members_{name}"] = (
             alone,
             unit,
-            "stiffness of the members, in series with interface and bolts",
+            f"joint_{name} divided by the share of the members; it depends on the pressure distribution",
         )
     return rows | members
 
