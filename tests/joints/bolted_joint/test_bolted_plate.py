@@ -169,7 +169,7 @@ def test_the_contact_of_one_row_opens_where_the_rows_say():
     ],
 )
 def test_a_plate_that_cannot_be_is_refused(changes, words):
-    with pytest.raises(ValueError, match=" m{1,2}[ ,]") as error:
+    with pytest.raises(ValueError, match=r" m{1,2}[ ,]") as error:
         plate(**{"x": [0.0], "y": [0.0]} | changes)
     assert all(word in str(error.value) for word in words), error.value
 

@@ -323,7 +323,7 @@ def warn_unusual_friction(drawing_options: DrawingOptions) -> list[str]:
     low, high = DEFAULT_MU_LIMITS
     return [
         f"mu = {mu:g} is above {MAX_USUAL_MU:g}, which only clean pairs of the same metal exceed; dry "
-        f"machined metal has {low:g} to {high:g} (VDI 2230, Table A6), and the slip force is proportional to mu"
+        f"machined metal has {low:g} to {high:g} (VDI 2230, Table A6). The slip force is proportional to mu"
     ]
 
 
