@@ -3,13 +3,16 @@
 The module `pressure` in a joint's folder defines the pressure by its constant NOMINAL_PRESSURE.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
+
+import numpy as np
 
 from jointfmu.joints import KINDS
 from jointfmu.joints.kind import JointKind
 from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import Array
 
 from .joint_parts import load_tool_module
 from .judgement import Plausibility, assess_law_stiffness, find_rms_height
@@ -28,6 +31,7 @@ class NominalPressureModel:
                                    law at the mean pressure [1]
     load_capacity                : parameter file -> (largest load [SI] of the loaded parts, name of this
                                    limit), or None if not known
+    is_part_load                 : whether the output of this name is the load of one of these parts
     """
 
     load_variable: str
@@ -36,6 +40,7 @@ class NominalPressureModel:
     peak_pressure: Callable[..., float]
     joint_to_law_stiffness_ratio: Callable[..., float] = lambda parameters, load: 1.0
     load_capacity: Callable[..., tuple[float, str] | None] = lambda parameter_file: None
+    is_part_load: Callable[[str], bool] = lambda output_name: False
 
 
 def uniform_pressure(joint_parameters: Any, joint_load: float) -> float:
@@ -97,6 +102,25 @@ def judge_joint_stiffness(
     )
     overload = warn_overload(nominal.load_variable, max(joint_loads, default=0.0), capacity)
     return judgement.prepend_warnings(overload or range_warnings)
+
+
+def warn_overload_in_run(
+    parameter_file: ParameterFile, variable_values: Mapping[str, float | Array]
+) -> list[str]:
+    """List a warning if a load of a run of the FMU is above the load capacity; the largest one is named.
+
+    variable_values : {variable: value, or values (n) of the run} of inputs and outputs [SI]
+    """
+    nominal = find_nominal_pressure_model(KINDS[parameter_file.joint])
+    if nominal is None or (capacity := nominal.load_capacity(parameter_file)) is None:
+        return []
+    loads = {
+        name: float(np.max(values))
+        for name, values in variable_values.items()
+        if name == nominal.load_variable or nominal.is_part_load(name)
+    }
+    largest = max(loads, key=lambda name: loads[name], default=None)
+    return [] if largest is None else warn_overload(largest, loads[largest], capacity)
 
 
 def warn_missing_members(parameter_file: ParameterFile) -> list[str]:

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from clients import needs
+from jointfmu_tools import cli
 from jointfmu_tools.joints.bolted_joint import report
 from jointfmu_tools.joints.bolted_joint.external_load import (
     OPEN_PRESSURE_RATIO,
@@ -83,3 +84,24 @@ def test_bolts_that_differ_in_the_added_force_are_not_called_equal():
     added = np.array([1.0, 1.02, 1.0, 1.02 + 1e-5])  # 2 % apart: 0.1 % of the whole force
     forces = 20e3 + np.outer(added, np.linspace(0.0, 1e3, 5))
     assert report._group_equal_bolts(forces) == [[0, 2], [1, 3]]
+
+
+@pytest.mark.slow
+@needs("gmsh")
+@pytest.mark.parametrize(
+    ("settings", "overloaded"),
+    [
+        (["--input", "preload", "--to", "40e3", "--step", "20e3"], "preload = 40000 N"),
+        (["--input", "s_rel_x", "--to", "1e-7", "--step", "1e-7", "--set", "preload=40e3"], "preload ="),
+        (["--input", "moment", "--to", "2500", "--step", "500", "--set", "preload=15e3"], "F_bolt["),
+        (["--input", "moment", "--to", "100", "--step", "50", "--set", "preload=15e3"], None),
+    ],
+)
+def test_a_run_that_overloads_a_bolt_is_warned_of(elastic_joint, capsys, settings, overloaded):
+    """The proof load is that of an M8 of the strongest class, 12.9: 970 MPa on 36.6 mm2."""
+    assert cli.main(["ramp", str(elastic_joint / "fmi3" / "BoltedJoint.fmu"), *settings]) == 0
+    warnings = [line for line in capsys.readouterr().err.splitlines() if "proof load" in line]
+    assert len(warnings) == (overloaded is not None)
+    if overloaded:
+        assert overloaded in warnings[0]
+        assert "is above 3.551e+04 N" in warnings[0]
