@@ -19,8 +19,9 @@ from jointfmu.joints.model import Model
 from jointfmu.mechanics.footprint.distribution import NodalField
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
+from jointfmu.quantity.units import conversion_factor
 
-from ...common.shown import format_quantity
+from ...common.shown import choose_display_unit, format_quantity, format_unit
 from ...pages.report.figure import ComparisonRow, Figure
 from ...pages.report.load_history import LoadHistory
 from .external_load import (
@@ -195,7 +196,9 @@ def _stiffness_rows(joint_compliances: Compliances) -> list[tuple[str, ...]]:
     heads = ("complete joint", "interface alone", "members", "bolts alone", "interface", "members", "bolts")
     rows: list[tuple[str, ...]] = [("", *heads)]
     for name, unit, stiffnesses, shares in joint_compliances.compliance_table_rows():
-        cells = [_format_in_display_unit(value, unit) if value > 0.0 else "none" for value in stiffnesses]
+        shown = choose_display_unit(unit, max(stiffnesses))
+        scale, ending = conversion_factor(unit, shown), format_unit(shown)
+        cells = [f"{scale * value:.4g} {ending}" if value > 0.0 else "none" for value in stiffnesses]
         rows.append((name, *cells, *(f"{share:.1%}" for share in shares)))
     return rows
 
