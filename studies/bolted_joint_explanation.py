@@ -6,6 +6,7 @@ pressure    : share of the force inside circles around the bolts, radius of gyra
               of VDI 2230 and by finite elements of the plates
 attachments : stiffness of the README's joint with plates and bolts, for each attachment, and stiffness of its
               interface alone
+opening     : moments that open the bracket, by hand and of the complete joint
 bed         : stiffness of a bracket on a bed: thickness of plate 2, attachment, bed larger than the plate
 """
 
@@ -23,6 +24,7 @@ from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate, TappedPlate
 from jointfmu_tools.fem.whole_joint import JointFiniteElements
 from jointfmu_tools.inputs.drawing.tables import read_threads
 from jointfmu_tools.inputs.fields.joint_parameters import normalise_pressure_field
+from jointfmu_tools.joints.bolted_joint.external_load import ExternalLoad, compute_opening_moment
 from jointfmu_tools.joints.bolted_joint.new import NEW_JOINT_COMMAND, plate_finite_elements
 from jointfmu_tools.joints.bolted_joint.new.plate import read_drawing
 from oracles.joint_elements import EXAMPLE
@@ -194,5 +196,32 @@ def print_beds() -> None:
         print_table_row(f"`{attached}`", thickness, bed, *cells, f"{found.compliance_shares[0, 2]:.0%}")
 
 
+# opening
+
+
+def print_opening_moments() -> None:
+    """Print the moments that open the bracket: by hand, of the complete joint, and of the outer bolts."""
+    options = dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.command_options)
+    file = NEW_JOINT_COMMAND.make_joint(options | BRACKET | {"thickness": ["30", "60"]}).parameter_file
+    spring, preload = BoltedJointSpring.from_joint(file.values), file.start_value("preload")
+    force, pattern = preload - file.values.embedding, file.values.pattern
+    bolts = pattern.bolt_positions_from_middle
+    names, still = ("K_rx", "K_ry"), (0.0, 0.0, 0.0)
+    tightened = spring.evaluate(preload, 0.0, still, still)
+    print_table_head("", "about", "uniform pressure", "complete joint", "outer bolts", "K, change")
+    for axis, size in enumerate((pattern.width, pattern.length)):
+        lever = bolts[:, 1 - axis]
+        found = compute_opening_moment(spring, preload, 0.0, axis)
+        load = ExternalLoad(spring, preload, 0.0, direction=3 + axis)
+        state = load.unloaded_state
+        for part in np.linspace(0.1, 1.0, 10):
+            state = load.solve_equilibrium(part * found, state)
+        opened = spring.evaluate(preload, 0.0, tuple(state[:3]), still, tuple(state[3:6]))
+        moments = (len(bolts) * force * size / 6.0, found, force * (lever @ lever) / lever.max())
+        change = opened[names[axis]] / tightened[names[axis]] - 1.0
+        print_table_row("xy"[axis], *(f"{1e-3 * moment:.2f} kN m" for moment in moments), f"{change:+.0%}")
+
+
 if __name__ == "__main__":
-    run_study(__doc__, {"pressure": print_pressures, "attachments": print_attachments, "bed": print_beds})
+    sections = {"pressure": print_pressures, "attachments": print_attachments}
+    run_study(__doc__, sections | {"bed": print_beds, "opening": print_opening_moments})
