@@ -6,6 +6,8 @@ pressure    : share of the force inside circles around the bolts, radius of gyra
               of VDI 2230 and by finite elements of the plates
 attachments : stiffness of the README's joint with plates and bolts, for each attachment, and stiffness of its
               interface alone
+opening     : moments that open the bracket, by hand and of the complete joint
+bed         : stiffness of a bracket on a bed: thickness of plate 2, attachment, bed larger than the plate
 """
 
 import tempfile
@@ -19,9 +21,12 @@ from common import print_table_head, print_table_row, run_study
 from jointfmu_tools import cli
 from jointfmu_tools.fem.bolted_contact import BoltedContact
 from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate, TappedPlate
+from jointfmu_tools.fem.whole_joint import JointFiniteElements
 from jointfmu_tools.inputs.drawing.tables import read_threads
 from jointfmu_tools.inputs.fields.joint_parameters import normalise_pressure_field
-from jointfmu_tools.joints.bolted_joint.new import NEW_JOINT_COMMAND
+from jointfmu_tools.joints.bolted_joint.external_load import ExternalLoad, compute_opening_moment
+from jointfmu_tools.joints.bolted_joint.new import NEW_JOINT_COMMAND, plate_finite_elements
+from jointfmu_tools.joints.bolted_joint.new.plate import read_drawing
 from oracles.joint_elements import EXAMPLE
 
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
@@ -150,5 +155,73 @@ def print_attachments() -> None:
     print(f"load factor {found['joint_load_factor']:.4f}, VDI 2230 {found['load_factor']:.4f}")
 
 
+# bed
+
+BRACKET = {
+    "plate": "180x120",
+    "bolts": "6xM10",
+    "at": ["140x80"],
+    "grid": "3x2",
+    "grip": ["30"],
+    "tapped": True,
+    "material": ["cast iron", "steel"],
+    "Ra": ["0.8", "3.2"],
+    "torque": "45",
+}
+"""Options of a cast bracket with a foot 30 mm thick on a steel bed."""
+BEDS = (
+    *(("faces", thickness, None) for thickness in (20, 40, 60, 100, 200)),
+    ("heads", 60, None),
+    *(("faces", thickness, (0.54, 0.36)) for thickness in (100, 150)),
+)
+"""Attachment, thickness of side 2 [mm], and its length and width [m]; None: those of the foot."""
+
+
+def print_beds() -> None:
+    """Print the stiffness of a bracket on a bed by finite elements, by thickness and size of the bed."""
+    print_table_head("", "attached", "T2 [mm]", "bed", *(f"K_{name}" for name in STIFFNESSES), "interface")
+    for attached, thickness, size in BEDS:
+        options = dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.command_options) | BRACKET
+        drawn = read_drawing(options | {"thickness": ["30", str(thickness)]})
+        assembly = drawn.bolted_plates.make_assembly(drawn.parameter_file)
+        if size:
+            length, width = size
+            assembly = replace(assembly, side2=replace(assembly.side2, length=length, width=width))
+        model = JointFiniteElements.from_assembly(assembly, attached)
+        preload, values = drawn.bolted_plates.preload, drawn.parameter_file.values
+        springs = plate_finite_elements._interface_stiffness(drawn.parameter_file, preload, model, None)
+        found = model.linearise_joint(springs, values.bolt_stiffness).compliances()
+        bed = "x".join(f"{1e3 * each:g}" for each in size) if size else "as the foot"
+        cells = [f"{stiffness:.3g}" for stiffness in 1.0 / found.total_compliance]
+        print_table_row(f"`{attached}`", thickness, bed, *cells, f"{found.compliance_shares[0, 2]:.0%}")
+
+
+# opening
+
+
+def print_opening_moments() -> None:
+    """Print the moments that open the bracket: by hand, of the complete joint, and of the outer bolts."""
+    options = dict.fromkeys(option.name for option in NEW_JOINT_COMMAND.command_options)
+    file = NEW_JOINT_COMMAND.make_joint(options | BRACKET | {"thickness": ["30", "60"]}).parameter_file
+    spring, preload = BoltedJointSpring.from_joint(file.values), file.start_value("preload")
+    force, pattern = preload - file.values.embedding, file.values.pattern
+    bolts = pattern.bolt_positions_from_middle
+    names, still = ("K_rx", "K_ry"), (0.0, 0.0, 0.0)
+    tightened = spring.evaluate(preload, 0.0, still, still)
+    print_table_head("", "about", "uniform pressure", "complete joint", "outer bolts", "K, change")
+    for axis, size in enumerate((pattern.width, pattern.length)):
+        lever = bolts[:, 1 - axis]
+        found = compute_opening_moment(spring, preload, 0.0, axis)
+        load = ExternalLoad(spring, preload, 0.0, direction=3 + axis)
+        state = load.unloaded_state
+        for part in np.linspace(0.1, 1.0, 10):
+            state = load.solve_equilibrium(part * found, state)
+        opened = spring.evaluate(preload, 0.0, tuple(state[:3]), still, tuple(state[3:6]))
+        moments = (len(bolts) * force * size / 6.0, found, force * (lever @ lever) / lever.max())
+        change = opened[names[axis]] / tightened[names[axis]] - 1.0
+        print_table_row("xy"[axis], *(f"{1e-3 * moment:.2f} kN m" for moment in moments), f"{change:+.0%}")
+
+
 if __name__ == "__main__":
-    run_study(__doc__, {"pressure": print_pressures, "attachments": print_attachments})
+    sections = {"pressure": print_pressures, "attachments": print_attachments}
+    run_study(__doc__, sections | {"bed": print_beds, "opening": print_opening_moments})

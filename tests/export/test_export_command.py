@@ -5,6 +5,7 @@ import re
 import subprocess
 import sys
 from contextlib import chdir
+from dataclasses import replace
 
 import pytest
 from conftest import refused_line
@@ -189,3 +190,15 @@ def test_what_can_be_written_and_fitted_is_known_without_scipy():
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert done.stdout == "[]\n"
+
+
+def test_a_curve_has_the_preload_of_the_file(folder):
+    file = replace(load_default("bolted_joint"), inputs={"preload": 9e3})
+    (folder / "joint.toml").write_text(format_parameter_file(file))
+    for stated in (
+        ["--params", "joint.toml", "--out", "file.csv"],
+        ["--preload", "9e3", "--out", "stated.csv"],
+    ):
+        assert cli.main(["export", "csv", "curve", *stated]) == 0
+    rows = [(folder / name).read_text().splitlines()[-20:] for name in ("file.csv", "stated.csv")]
+    assert rows[0] == rows[1]

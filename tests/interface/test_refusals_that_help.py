@@ -57,8 +57,8 @@ def test_a_law_that_no_joint_has_is_evaluated(monkeypatch):
 
 
 def test_a_parameter_file_in_place_of_another_subject(drive_file, capsys):
-    line = refused_line(capsys, "uncertainty", drive_file)
-    assert f"state a parameter file with --params {drive_file}" in line
+    line = refused_line(capsys, "uncertainty", drive_file, "--params", drive_file)
+    assert "stated twice; leave out --params" in line
     for command in (("modes",), ("footprint", "compute")):
         line = refused_line(capsys, *command, drive_file, "--preload", "9e3")
         assert "is the parameter file of a harmonic_drive, not an assembly" in line

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 from jointfmu_tools.cli import main
-from jointfmu_tools.inputs.drawing.tables import find_table_row
+from jointfmu_tools.inputs.drawing.tables import find_table_row, read_material_or_finish_table
 from jointfmu_tools.inputs.surfaces import bearing_curve, csvfile, form, solve, stiffness_table
 from jointfmu_tools.inputs.surfaces.bearing_curve import BearingCurve, HeightSample
 from jointfmu_tools.inputs.surfaces.heights import ArealMap
@@ -170,5 +170,11 @@ def test_a_finish_gives_gamma_the_range_of_its_skewness(capsys, tmp_path, option
             for end in ("low", "high")
         ]
         assert file.ranges["gamma"] == pytest.approx(expected, rel=1e-6)
-    else:
-        assert "gamma" not in file.ranges
+    else:  # who knows less has the wider range: that of every finish
+        low, high = file.ranges["gamma"]
+        for finish in read_material_or_finish_table("finishes"):
+            stated = tmp_path / f"{finish}.toml"
+            words = f"new gear-contact --radii 20 30 --width 10 --load 500 --material steel {options}"
+            assert main([*words.split(), "--finish", finish, "--out", str(stated)]) == 0
+            known = load_parameter_file(stated).ranges["gamma"]
+            assert low <= known[0] < known[1] <= high, finish

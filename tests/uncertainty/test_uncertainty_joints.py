@@ -216,7 +216,7 @@ def test_zero_outputs_are_left_out_and_parameters_without_effect_are_named(tmp_p
     assert cli.main([*given, *few, "--plot", str(plot)]) == 0
     text = capsys.readouterr().out
     assert text.count("C_zz") == text.count("zero at all loads: C_zz\n") == 1
-    assert plot.read_text().count('<g id="axes_') == 7
+    assert plot.read_text().count('<g id="axes_') == 11
     assert (
         cli.main(["uncertainty", "gear_contact", "--set", "mu=0.1..0.3", "traction_ratio=0..0.5", *few]) == 0
     )

@@ -17,7 +17,7 @@ from jointfmu.parameters import load_parameter_file as load_file
 from ..common import plots
 from ..common.names import find_similar_names
 from ..common.options import Option
-from ..inputs.drawing.faces import warn_unknown_height_distribution
+from ..inputs.drawing.faces import warn_unknown_height_distribution, warn_unusual_friction
 from ..inputs.drawing.part import NewJoint, NewJointCommand
 from ..inputs.drawing.reading import parse_number
 from ..inputs.fitting.outcome import FitResult, draw_fit_plots, fit_figure_size, format_relative_deviation
@@ -107,9 +107,8 @@ def make_joint_from_drawing(joint_command: NewJointCommand, option_values: Mappi
         raise ValueError(f"{', '.join(missing)} missing: {options[missing[0]].help_text}")
     texts = {name: _to_command_line_value(o, option_values.get(name)) for name, o in options.items()}
     new: NewJoint = joint_command.make_joint(texts)
-    return create_joint(
-        new.parameter_file, new.facts, [*new.warnings, *warn_unknown_height_distribution(texts)]
-    )
+    warnings = [*new.warnings, *warn_unknown_height_distribution(texts), *warn_unusual_friction(texts)]
+    return create_joint(new.parameter_file, new.facts, warnings)
 
 
 @contextmanager

@@ -3,13 +3,16 @@
 The module `pressure` in a joint's folder defines the pressure by its constant NOMINAL_PRESSURE.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
+
+import numpy as np
 
 from jointfmu.joints import KINDS
 from jointfmu.joints.kind import JointKind
 from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import Array
 
 from .joint_parts import load_tool_module
 from .judgement import Plausibility, assess_law_stiffness, find_rms_height
@@ -28,6 +31,7 @@ class NominalPressureModel:
                                    law at the mean pressure [1]
     load_capacity                : parameter file -> (largest load [SI] of the loaded parts, name of this
                                    limit), or None if not known
+    is_part_load                 : whether the output of this name is the load of one of these parts
     """
 
     load_variable: str
@@ -36,6 +40,7 @@ class NominalPressureModel:
     peak_pressure: Callable[..., float]
     joint_to_law_stiffness_ratio: Callable[..., float] = lambda parameters, load: 1.0
     load_capacity: Callable[..., tuple[float, str] | None] = lambda parameter_file: None
+    is_part_load: Callable[[str], bool] = lambda output_name: False
 
 
 def uniform_pressure(joint_parameters: Any, joint_load: float) -> float:
@@ -64,14 +69,19 @@ def judge_joint_stiffness(
     """Compare the stiffness of a joint under loads with the estimate from roughness, and list warnings.
 
     joint_loads : values of `NominalPressureModel.load_variable` [SI]; None: the start value in the file, or,
-                  if
-                  it is zero, the default load. At the default load the stiffness is only compared with the
-                  estimate from roughness
+                  if it is zero, the default load. At the default load the stiffness is only compared with the
+                  estimate from roughness. With None, the upper end of the range in the file is also checked
+                  against the load capacity
     """
     kind = KINDS[parameter_file.joint]
     nominal = find_nominal_pressure_model(kind)
     if nominal is None or kind.extract_law(parameter_file.values) is None:
         return Plausibility(None, ())
+    capacity = nominal.load_capacity(parameter_file)
+    range_warnings = []
+    if joint_loads is None and (ends := parameter_file.ranges.get(f"inputs.{nominal.load_variable}")):
+        name = f"upper end of the range of {nominal.load_variable}"
+        range_warnings = warn_overload(name, ends[1], capacity)
     if joint_loads is None and parameter_file.start_value(nominal.load_variable) > 0.0:
         joint_loads = [parameter_file.start_value(nominal.load_variable)]
     law, h, limits = (
@@ -90,10 +100,27 @@ def judge_joint_stiffness(
         [nominal.joint_to_law_stiffness_ratio(parameter_file.values, load) for load in joint_loads],
         limits,
     )
-    capacity = nominal.load_capacity(parameter_file)
-    return judgement.prepend_warnings(
-        warn_overload(nominal.load_variable, max(joint_loads, default=0.0), capacity)
-    )
+    overload = warn_overload(nominal.load_variable, max(joint_loads, default=0.0), capacity)
+    return judgement.prepend_warnings(overload or range_warnings)
+
+
+def warn_overload_in_run(
+    parameter_file: ParameterFile, variable_values: Mapping[str, float | Array]
+) -> list[str]:
+    """List a warning if a load of a run of the FMU is above the load capacity; the largest one is named.
+
+    variable_values : {variable: value, or values (n) of the run} of inputs and outputs [SI]
+    """
+    nominal = find_nominal_pressure_model(KINDS[parameter_file.joint])
+    if nominal is None or (capacity := nominal.load_capacity(parameter_file)) is None:
+        return []
+    loads = {
+        name: float(np.max(values))
+        for name, values in variable_values.items()
+        if name == nominal.load_variable or nominal.is_part_load(name)
+    }
+    largest = max(loads, key=lambda name: loads[name], default=None)
+    return [] if largest is None else warn_overload(largest, loads[largest], capacity)
 
 
 def warn_missing_members(parameter_file: ParameterFile, advice: str = "its FMU has the members") -> list[str]:
@@ -107,13 +134,11 @@ def warn_missing_members(parameter_file: ParameterFile, advice: str = "its FMU h
     ]
 
 
-def warn_overload(
-    load_variable: str, joint_load: float, load_capacity: tuple[float, str] | None
-) -> list[str]:
+def warn_overload(load_name: str, joint_load: float, load_capacity: tuple[float, str] | None) -> list[str]:
     """List a warning if a load [N] is above the load capacity; otherwise the list is empty.
 
     load_capacity : (largest load [N], name of this limit), or None if not known
     """
     if load_capacity is None or joint_load <= load_capacity[0]:
         return []
-    return [f"{load_variable} = {joint_load:g} N is above {load_capacity[0]:.4g} N, {load_capacity[1]}"]
+    return [f"{load_name} = {joint_load:g} N is above {load_capacity[0]:.4g} N, {load_capacity[1]}"]

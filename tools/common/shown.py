@@ -13,11 +13,11 @@ from jointfmu.quantity import describe_range, flatten_fields
 from jointfmu.quantity.units import conversion_factor, display_unit
 
 STIFFNESS_DISPLAY_UNITS = {"N.m/rad": "N.m/rad", "N/m": "N/um"}
-"""Display units of stiffnesses on all pages: {SI unit: display unit}. Large stiffnesses have the prefix kilo.
+"""Display units of stiffnesses on all pages: {SI unit: display unit}. Large stiffnesses have a prefix.
 
 Other display units depend on the value."""
-_MIN_KILO_VALUE = 1e4
-"""Value in a display unit of stiffness with the prefix kilo from here on: 13.3 kN/um, not 1.33e+04 N/um."""
+_MIN_PREFIX_VALUES = {"M": 1e7, "k": 1e4}
+"""{prefix of a display unit of stiffness: value from which it is used}: 13.3 kN/um, not 1.33e+04 N/um."""
 
 
 def choose_display_unit(si_unit: str, typical_value: float) -> str:
@@ -25,7 +25,9 @@ def choose_display_unit(si_unit: str, typical_value: float) -> str:
     if si_unit not in STIFFNESS_DISPLAY_UNITS:
         return display_unit(si_unit, typical_value)
     shown = STIFFNESS_DISPLAY_UNITS[si_unit]
-    return f"k{shown}" if abs(typical_value) * conversion_factor(si_unit, shown) >= _MIN_KILO_VALUE else shown
+    value = abs(typical_value) * conversion_factor(si_unit, shown)
+    prefix = next((prefix for prefix, least in _MIN_PREFIX_VALUES.items() if value >= least), "")
+    return f"{prefix}{shown}"
 
 
 def format_unit(si_unit: str) -> str:
@@ -58,11 +60,17 @@ def align_columns(text_rows: Sequence[Sequence[str]], text_column_count: int | N
 
 
 def format_derived_values(derived_values: Mapping[str, tuple[float, str, str]]) -> list[str]:
-    """Format derived values of a joint, {name: (value, unit, meaning)}, as lines of text."""
-    return [
-        f"{name:18} {value:.4g}{'' if unit == '1' else f' {unit}'}  {text}"
-        for name, (value, unit, text) in derived_values.items()
-    ]
+    """Format derived values of a joint, {name: (value, unit, meaning)}, as lines of text.
+
+    If a meaning begins, up to its colon, as that of the line before, this part is replaced by dots.
+    """
+    lines, last_head = [], ""
+    for name, (value, unit, text) in derived_values.items():
+        head, colon, rest = text.partition(": ")
+        shown = f"... {rest}" if colon and head == last_head else text
+        last_head = head
+        lines.append(f"{name:18} {value:.4g}{'' if unit == '1' else f' {unit}'}  {shown}")
+    return lines
 
 
 def derived_values_to_json(derived_values: Mapping[str, tuple[float, str, str]]) -> dict[str, object]:

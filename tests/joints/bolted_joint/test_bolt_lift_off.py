@@ -9,8 +9,8 @@ from conftest import Fmu, here_alone
 from jointfmu_fmu_src.building import build_fmus
 from jointfmu_tools import cli
 from jointfmu_tools.joints.bolted_joint.export import tabulate_normal_force
+from jointfmu_tools.joints.bolted_joint.external_load import compute_bolt_forces
 from jointfmu_tools.joints.bolted_joint.fit.preload import compute_joint_stiffness
-from jointfmu_tools.joints.bolted_joint.tensile_load import compute_bolt_forces
 from natives import jacobian
 
 from jointfmu.joints.bolted_joint import bolts as bolt_law

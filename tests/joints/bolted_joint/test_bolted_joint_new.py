@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -27,6 +28,7 @@ from jointfmu_tools.joints.bolted_joint.new import (
     STANDARD_WASHER_OPTION,
     TIGHTENING_METHODS,
     layout,
+    plate,
 )
 from jointfmu_tools.joints.bolted_joint.new.plate import read_drawing
 from jointfmu_tools.joints.bolted_joint.report import make_preload_figures
@@ -272,9 +274,9 @@ def test_a_stated_preload_scatters_if_its_tightening_is_stated(capsys):
 def test_the_yield_strength_limits_the_torque(capsys):
     words = [*PLATE, *FACES, *KNOWN, "--property-class", "8.8", "--torque"]
     found = made(capsys, *words, "84")
-    assert found["warnings"] == []
+    assert [line[:12] for line in found["warnings"]] == ["preload_high", "upper end of"]
     assert found["facts"]["yield_utilisation"]["value"] == pytest.approx(0.9, rel=0.01)
-    (line,) = made(capsys, *words, "90")["warnings"]
+    line = made(capsys, *words, "90")["warnings"][0]
     assert (
         "uses 97% of the yield strength of M12-8.8 in tightening (VDI 2230, von Mises), allowed are" in line
     )
@@ -284,6 +286,26 @@ def test_the_yield_strength_limits_the_torque(capsys):
         assert refused_line(capsys, "new", "bolted-joint", *words, torque).rstrip().endswith(advice)
     line = refused_line(capsys, "new", "bolted-joint", *PLATE, *FACES, "--torque", "840")
     assert "times the yield strength of M12-12.9, the strongest class" in line
+
+
+def test_the_upper_end_of_the_preload_is_checked_as_a_preload(capsys):
+    """The upper end comes from the smallest friction: its utilisation is that of this friction, if stated."""
+    words = [*PLATE, *FACES, *TORQUE, "--property-class", "12.9"]
+    found = facts_of(capsys, *words)
+    least = facts_of(capsys, *words, "--thread-friction", "0.08", "--head-friction", "0.08")
+    assert found["preload_high"] == pytest.approx(least["preload"])
+    assert found["yield_utilisation_high"] == pytest.approx(least["yield_utilisation"])
+    # scatter alone: the friction is that of the preload, so the utilisation is proportional to the force
+    angle = facts_of(capsys, *words, "--tightening", "angle")
+    assert angle["yield_utilisation_high"] / angle["yield_utilisation"] == pytest.approx(
+        angle["preload_high"] / angle["preload"]
+    )
+    words = [*words[:-1], "8.8", "--torque"]
+    line, proof = made(capsys, *words, "84")["warnings"]
+    assert "above 4.887e+04 N, the proof load of M12-8.8" in proof  # 580 MPa x 84.3 mm2
+    safe = re.search(r"at most --torque ([\d.]+)$", line)[1]
+    assert made(capsys, *words, safe)["warnings"] == []
+    assert made(capsys, *words, str(1.03 * float(safe)))["warnings"]
 
 
 def test_fine_threads(capsys):
@@ -317,14 +339,27 @@ def test_a_preload_range_reaches_report_and_study(capsys, tmp_path):
     assert (load.name, load.support_interval) == (
         "preload", pytest.approx((facts["preload_low"] - left, facts["preload_high"] - left)),
     )  # fmt: skip
+    assert study.loads == pytest.approx([facts["preload"] - left])  # nominal: that of the file
     assert "opening_load" in study.output_units
     low, high = file.ranges["inputs.preload"]  # of an FMU, whose input is what is tightened
     assert resolve_interval_setting("preload", "interval", file) == f"{low!r}..{high!r}"
     # a stated ramp takes the place of the range
-    assert [each.name for each in define_joint_study(file, {}, 30e3, 3).uncertain_parameters] == ["mu"]
+    ramped = define_joint_study(file, {}, 30e3, 3).uncertain_parameters
+    assert {each.name for each in ramped} == {"mu", "gamma"}
     bare = replace(file, ranges={"inputs.preload": (1e3, 50e3)})
     with pytest.raises(ValueError, match="the joint may lose all of it"):
         define_joint_study(bare, {}, None, 3)
+
+
+def test_a_column_of_the_bed_thickness_tilts_as_a_large_bed():
+    """Rotational stiffness of a rigid disc on a half-space, 8 G a^3/(3 (1 - nu)), is E I/T of the column."""
+    a, nu = 0.05, 0.3
+    side = a * math.sqrt(math.pi)  # a square of the same area
+    pattern = SimpleNamespace(length=side, width=side)
+    thickness = plate._compute_bed_thickness(pattern)["bed_thickness"][0]
+    E = 210e9
+    half_space = 8.0 * E / (2.0 * (1.0 + nu)) * a**3 / (3.0 * (1.0 - nu))
+    assert E * math.pi * a**4 / 4.0 / thickness == pytest.approx(half_space, rel=0.02)  # 0.3: one digit
 
 
 # Washers
@@ -607,7 +642,8 @@ def test_rz_gives_ra_with_its_scatter(capsys, tmp_path):
     assert found["embedding"]["value"] == pytest.approx(known["embedding"])
     depth = known["embedding"] * (1.0 / known["bolt_stiffness"] + 1.0 / known["member_stiffness"])
     assert depth == pytest.approx(9.5e-6)
-    assert {each.name for each in define_joint_study(file, {}, 30e3, 3).uncertain_parameters} == {"mu", "h"}
+    uncertain = {each.name for each in define_joint_study(file, {}, 30e3, 3).uncertain_parameters}
+    assert uncertain == {"mu", "h", "gamma"}
 
 
 def test_stated_ranges_are_in_the_file(capsys, tmp_path):
@@ -641,7 +677,7 @@ def test_stated_ranges_are_in_the_file(capsys, tmp_path):
         (["--bolts", "M12"], "--at LxW for one bolt: expected the number of --bolts, as in 4xM12"),
         (["--mu", "15"], "--mu = '15' is outside (0, 2]: coefficient of friction of metals"),
         (["--at", "220x60"], "bolt 1 at (-110, -30) mm is not inside the plate"),
-        (["--at", "190x60"], "is not inside the plate; allowed are |x| < 0.09325 m"),
+        (["--at", "190x60"], "is not inside the plate; allowed are |x| < 93.25 mm"),
         (["--at", "10x60"], "the holes of bolts 1 and 2 overlap"),
         (["--at", "0,0", "10,10"], "--at has 2 positions, expected 4: one for each of --bolts"),
         (["--at", "160x60", "80x30"], "expected one LxW, or the position X,Y of each bolt"),
@@ -676,6 +712,8 @@ def test_stated_ranges_are_in_the_file(capsys, tmp_path):
         (["--bolts", "4xM12x1"], "allowed pitches of M12 are 1.75, 1.5, 1.25 mm"),
         (["--preload", "nan"], "--preload = 'nan' is not a number"),
         (["--preload", "2kN"], "embedding takes 2643 N, the whole preload of 2000 N"),
+        (["--torque", "45Ncm"], "N by --torque = '45Ncm', which is 0.45 N.m: state a larger --torque"),
+        (["--material", "castiron"], "did you mean cast iron?"),
         (["--embedding", "-1"], "--embedding = '-1' is outside [0, inf) N: preload loss of a bolt"),
         (["--material", "unobtainium"], "material 'unobtainium' is unknown, allowed are steel,"),
         (["--material", "steel", "steel", "steel"], "--material has 3 values"),
@@ -706,6 +744,20 @@ def test_a_roughness_must_be_stated(capsys):
 def test_places_must_be_stated(capsys):
     words = ["--plate", "200x100", "--bolts", "4xM12", "--grip", "40", *FACES]
     assert "the positions of 4 bolts are missing" in refused_line(capsys, "new", "bolted-joint", *words)
+
+
+def test_a_friction_of_no_machined_face_is_warned_of(capsys):
+    (line,) = made(capsys, *PLATE, *FACES, *LOAD, "--mu", "1.5")["warnings"]
+    assert line.startswith("mu = 1.5 is above 0.8")
+    assert made(capsys, *PLATE, *FACES, *LOAD, "--mu", "0.1..0.8")["warnings"] == []
+
+
+def test_underscores_in_names_of_materials(capsys):
+    found = [
+        made(capsys, *PLATE, "--material", name, "--Ra", "0.8", *LOAD)["parameters"]
+        for name in ("cast_iron", "Grauguss", "cast iron")
+    ]
+    assert found[0] == found[1] == found[2]
 
 
 def test_a_preload_no_bolt_bears_is_warned_of(capsys):
@@ -824,24 +876,20 @@ def test_friction_of_which_nothing_is_said_has_a_range(capsys, tmp_path):
     (mu,) = (each for each in list_parameter_file_entries(file) if each.entry_name == "mu")
     assert mu.value_source.startswith(f"{low:g} to {high:g}; ")
     study = define_joint_study(file, {}, 30e3, 3)
-    assert [(each.name, each.support_interval) for each in study.uncertain_parameters] == [
-        ("mu", (low, high))
-    ]
-    assert define_joint_study(file, {"mu": "interval"}, 30e3, 3).uncertain_parameters[0].support_interval == (
-        low,
-        high,
-    )
+    for each in (study, define_joint_study(file, {"mu": "interval"}, 30e3, 3)):
+        intervals = {known.name: known.support_interval for known in each.uncertain_parameters}
+        assert intervals == {"mu": (low, high), "gamma": file.ranges["gamma"]}
     assert "mu" not in {
         each.name
         for each in define_joint_study(file, {"mu": 0.2, "h": "+-10%"}, 30e3, 3).uncertain_parameters
     }
-    assert not file.with_values({"mu": 0.2}, "user", "set").ranges
+    assert "mu" not in file.with_values({"mu": 0.2}, "user", "set").ranges
 
 
 def test_friction_that_is_stated_has_no_range(capsys, tmp_path):
     path = tmp_path / "plate.toml"
     facts = made(capsys, *PLATE, *FACES, *LOAD, "--mu", "0.2", path=path)["facts"]
-    assert not load_parameter_file(path).ranges
+    assert "mu" not in load_parameter_file(path).ranges
     assert {name for name in facts if name.startswith("slip_force")} == {"slip_force"}
 
 

@@ -20,9 +20,9 @@ from jointfmu_tools.inputs.fields.joint_parameters import insert_pressure_field
 from jointfmu_tools.inputs.fields.nodal_result import ContactPressureField
 from jointfmu_tools.inputs.fitting import branches
 from jointfmu_tools.joints.bolted_joint import report
+from jointfmu_tools.joints.bolted_joint.external_load import compute_bolt_forces
 from jointfmu_tools.joints.bolted_joint.fit import loop
 from jointfmu_tools.joints.bolted_joint.fit import preload as over_preload
-from jointfmu_tools.joints.bolted_joint.tensile_load import compute_bolt_forces
 from jointfmu_tools.pages.report.load_history import LoadHistory
 from jointfmu_tools.studies.uncertainty import propagate
 from jointfmu_tools.studies.uncertainty.problem import define_joint_study
@@ -131,6 +131,8 @@ def test_the_report_states_the_whole_beside_its_parts(made):
     assert [row[0] for row in friction.table_rows[1:]] == ["0.1", "0.15", "0.3"]
     assert [row[0] for row in figure.table_rows[1:]] == list(AXES)
     assert f"{1e-9 / found.total_compliance[2]:.4g} kN/µm" in figure.table_rows[3]
+    for row in figure.table_rows[1:]:  # one unit, so that the columns can be compared
+        assert len({cell.split(" ", 1)[1] for cell in row[1:5] if cell != "none"}) == 1
     (panel,) = figure.plot_panels
     for series in panel.chart_series:  # from its preload, slowly, then with all of the load
         assert series.y_values[0] == pytest.approx(15.0)

@@ -6,7 +6,7 @@ import sys
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from jointfmu.files.writing import write_text
 
 from ...common import columns, plots
 from ...common.options import format_option_flag
+from ...common.pressure import warn_overload_in_run
 from ...common.shown import align_columns
 from ...run.ramps import loops, ramp
 from ..command import CommandResult, SubParsers, declare_argument, declare_command, declare_set_option
@@ -123,6 +124,7 @@ def _run_ramp(args: argparse.Namespace) -> CommandResult:
         print(
             f"note: --to = {args.to:g} {unit} is beyond the range of the law; check its unit", file=sys.stderr
         )
+    overload = _find_overload(args.fmu, dict(args.settings) | result.variable_columns)
     result = _select_columns(result, args.input, args.columns)
     if args.csv:
         write_text(args.csv, result.format_time_series_csv())
@@ -139,7 +141,19 @@ def _run_ramp(args: argparse.Namespace) -> CommandResult:
     return CommandResult(
         json_document={"fmu": str(args.fmu), "units": result.variable_units, "columns": columns},
         output_lines=lines,
+        stderr_lines=[f"warning: {text}" for text in overload],
     )
+
+
+def _find_overload(fmu: Path, variable_values: dict[str, Any]) -> list[str]:
+    """List a warning if a bolt or another part is overloaded; empty if the FMU has no parameter file."""
+    from ...studies.uncertainty.sweep import load_contained_parameter_file
+
+    try:
+        file = load_contained_parameter_file(fmu)
+    except ValueError:
+        return []
+    return warn_overload_in_run(file, variable_values)
 
 
 def _select_columns(

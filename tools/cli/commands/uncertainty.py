@@ -52,8 +52,8 @@ def add_command(command_parsers: SubParsers) -> None:
     text = "compute uncertainty bands of a joint or an FMU from uncertain parameters"
     study = declare_command(command_parsers, "uncertainty", _run_uncertainty, text)
     study.epilog = DISTRIBUTIONS_HELP
-    joints = f"joint ({', '.join(KINDS)}), or the path of an FMU; without it, the joint of --params"
-    declare_argument(study, "subject", str, joints, "JOINT|FMU", nargs="?")
+    joints = f"joint ({', '.join(KINDS)}), parameter file (.toml) or FMU; without it, the joint of --params"
+    declare_argument(study, "subject", str, joints, "JOINT|FILE", nargs="?")
     declare_argument(
         study, "--params", Path, "parameter file of the joint, in place of its default parameters (TOML)"
     )
@@ -129,7 +129,7 @@ def _is_fmu(joint_or_fmu: str | None) -> bool:
     if joint_or_fmu is None or joint_or_fmu in KINDS:
         return False
     if joint_or_fmu.lower().endswith(".toml"):
-        raise ValueError(f"{joint_or_fmu}: is no FMU; state a parameter file with --params {joint_or_fmu}")
+        raise ValueError(f"{joint_or_fmu}: a parameter file is stated twice; leave out --params")
     if joint_or_fmu.lower().endswith(".fmu") or Path(joint_or_fmu).exists():
         return True
     allowed = f"{', '.join(KINDS)}, or the path of an FMU"
@@ -204,6 +204,8 @@ def _run_uncertainty(args: argparse.Namespace) -> CommandResult:
     from ...studies.uncertainty.sweep import format_quantiles_csv
     from ...studies.uncertainty.worker import JointRampEvaluator
 
+    if args.subject and args.subject.lower().endswith(".toml") and args.params is None:
+        args.subject, args.params = None, Path(args.subject)
     is_fmu = _is_fmu(args.subject)
     _check_options(args, is_fmu)
     execution = _create_run_executor(args)

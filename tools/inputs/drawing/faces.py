@@ -25,7 +25,7 @@ from .interface_table import add_interface_table
 from .part import DrawingOptions, ParameterSheet
 from .quantities import StatedNumber, parse_quantity
 from .reading import expand_to_sides, parse_number
-from .tables import MaterialOrFinish, find_table_row
+from .tables import MaterialOrFinish, find_table_row, read_material_or_finish_table
 
 FACE_OPTIONS = (
     Option(
@@ -89,7 +89,8 @@ FACE_OPTIONS = (
     ),
     Option(
         "mu",
-        "coefficient of friction [1], or its range as in 0.1..0.3 (default: 0.15, with the range 0.1 to 0.3)",
+        "coefficient of friction [1], or its range as in 0.1..0.3, whose middle is then the value (default: "
+        "0.15, with the range 0.1 to 0.3)",
     ),
 )
 """Options of every joint with rough faces."""
@@ -99,6 +100,9 @@ DEFAULT_MU, DEFAULT_MU_LIMITS = 0.15, (0.1, 0.3)
 """Coefficient of friction if the drawing states none, and its range [1]."""
 DEFAULT_MU_SOURCE = "usual value of dry machined metal, not measured; VDI 2230, Table A6: 0.1 to 0.3"
 """Source text of the coefficient of friction, if none is stated."""
+MAX_USUAL_MU = 0.8
+"""Coefficient of friction [1] above which a stated value is doubtful: clean pairs of the same metal, without
+oxide or oil, have 0.8 to 1.5."""
 DEFAULT_RMS_SLOPE = 0.1
 """Rms slope [1] of a surface if only its height is known."""
 DEFAULT_HURST_EXPONENT = 0.8
@@ -133,7 +137,8 @@ class FaceRoughness(NamedTuple):
     height_source             : source of the height
     stated_heights            : {key of the section [roughness] without the number of the side: height [m]}
     is_from_finish            : whether a finish alone gives the height
-    skewness_range            : smallest and largest skewness of the finish [1]; None: no finish
+    skewness_range            : smallest and largest skewness [1] of the finish, or of all finishes if none is
+                                stated; None: the heights are those of a scan
     """
 
     Rq: float
@@ -235,7 +240,10 @@ def _add_roughness(
     texts = "; ".join(f"side {i + 1}: {face.height_source}" for i, face in enumerate(faces))
     spread = f"; {low * 1e6:.3g} to {high * 1e6:.3g} um with the ranges of the heights" if high > low else ""
     parameter_sheet.add_parameter(
-        "h", h, "estimate" if high > low else "derived", f"sqrt(Rq1^2 + Rq2^2), Rq = 1.25 Ra; {texts}{spread}"
+        "h",
+        h,
+        "estimate" if high > low else "derived",
+        f"sqrt(Rq1^2 + Rq2^2), Rq = {roughness.RQ_OVER_RA:.4g} Ra; {texts}{spread}",
     )
     if high > low and not any(face.is_from_finish for face in faces):
         parameter_sheet.set_parameter_range("h", low, high)
@@ -269,7 +277,8 @@ def _add_roughness_law_gamma(
 ) -> None:
     """Add gamma [1] of the law stiffness = pressure/(gamma h) to a parameter sheet; h: combined rms height.
 
-    The value holds for Gaussian heights. Its range follows from the skewness of the finishes.
+    The value holds for Gaussian heights. Its range follows from the skewness of the finishes, and contains
+    the value: honed faces, for example, have negative skewness only.
     """
     text = "boundary elements: 0.40 to 0.48 (docs/validity.md)"
     ends = [face.skewness_range for face in faces if face.skewness_range]
@@ -282,7 +291,10 @@ def _add_roughness_law_gamma(
     )
     text += f"; range: skewness {low:.2g} to {high:.2g} of both sides together (docs/surfaces_explanation.md)"
     parameter_sheet.add_parameter("gamma", roughness.PERSSON_GAMMA, "estimate", text)
-    limits = (roughness.PERSSON_GAMMA * lognormal_tail_over_rms_height(skewness) for skewness in (low, high))
+    limits = [
+        roughness.PERSSON_GAMMA * lognormal_tail_over_rms_height(skewness)
+        for skewness in (min(low, 0.0), max(high, 0.0))
+    ]
     parameter_sheet.set_parameter_range("gamma", *limits)
 
 
@@ -297,8 +309,22 @@ def warn_unknown_height_distribution(drawing_options: DrawingOptions) -> list[st
         return []
     return [
         f"{stated[0]} alone does not state the height distribution: with plateaus (ground, honed or lapped "
-        "faces) the interface is up to several times stiffer; state --finish for a range, or use measured "
-        "heights (jointfmu surface)"
+        "faces) the interface is up to several times stiffer; the range of gamma in the file is that of all "
+        "finishes; state --finish for a narrower range, or use measured heights (jointfmu surface)"
+    ]
+
+
+def warn_unusual_friction(drawing_options: DrawingOptions) -> list[str]:
+    """List a warning if the stated coefficient of friction is larger than that of machined faces in air."""
+    if drawing_options.get("mu") is None:
+        return []
+    mu = parse_quantity("mu", drawing_options["mu"]).upper_limit
+    if mu <= MAX_USUAL_MU:
+        return []
+    low, high = DEFAULT_MU_LIMITS
+    return [
+        f"mu = {mu:g} is above {MAX_USUAL_MU:g}, which only clean pairs of the same metal exceed; dry "
+        f"machined metal has {low:g} to {high:g} (VDI 2230, Table A6). The slip force is proportional to mu"
     ]
 
 
@@ -401,11 +427,13 @@ def _roughness_from_finish(finish_name: str) -> FaceRoughness:
     )
 
 
-def _skewness_limits(surface_finish: MaterialOrFinish) -> tuple[float, float]:
-    """Smallest and largest skewness of the heights of a finish [1]."""
-    return surface_finish.sourced_numbers["skewness_low"].si_value, surface_finish.sourced_numbers[
-        "skewness_high"
-    ].si_value
+def _skewness_limits(*surface_finishes: MaterialOrFinish) -> tuple[float, float]:
+    """Smallest and largest skewness of the heights [1] that one of the finishes may have."""
+    low, high = (
+        [finish.sourced_numbers[column].si_value for finish in surface_finishes]
+        for column in ("skewness_low", "skewness_high")
+    )
+    return min(low), max(high)
 
 
 def _roughness_from_stated_height(
@@ -432,7 +460,9 @@ def _roughness_from_stated_height(
     Ra = Rq / roughness.RQ_OVER_RA
     Rz = stated.stated_value if roughness_name == "Rz" else RZ_OVER_RA * Ra
     wave = _cut_off_wavelength(Ra)
-    shape = _skewness_limits(surface_finish) if surface_finish else None
+    shape = _skewness_limits(
+        *([surface_finish] if surface_finish else read_material_or_finish_table("finishes").values())
+    )
     return FaceRoughness(
         Rq, Rq_low, Rq_high, Rz, slope, hurst, wave, text, {key: height.stated_value}, skewness_range=shape
     )

@@ -1,6 +1,7 @@
 """Shipped tables of materials, finishes and bolts: models/tables/*.toml."""
 
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache
@@ -12,6 +13,7 @@ from jointfmu.parameters import read_document, read_entries
 from jointfmu.quantity import quantity_field
 from jointfmu.quantity.units import conversion_factor
 
+from ...common.names import find_similar_names
 from ..catalogue import SourcedNumber
 
 MATERIAL_COLUMNS = {
@@ -63,7 +65,9 @@ def read_material_or_finish_table(table_name: str) -> dict[str, MaterialOrFinish
 
 
 def find_table_row(table_name: str, row_name: str) -> MaterialOrFinish:
-    """Find a row of the table of materials or finishes by one of its names. Case and hyphens are ignored.
+    """Find a row of the table of materials or finishes by one of its names.
+
+    Case, hyphens and underscores are ignored.
 
     Raises ValueError if no row has the name.
     """
@@ -72,15 +76,18 @@ def find_table_row(table_name: str, row_name: str) -> MaterialOrFinish:
         if _normalise_name(row_name) in map(_normalise_name, (candidate.row_name, *candidate.row_aliases)):
             return candidate
     noun = {"materials": "material", "finishes": "finish"}[table_name]
+    names = [name for row in rows.values() for name in (row.row_name, *row.row_aliases)]
+    similar = find_similar_names(row_name, names, 1)
     raise ValueError(
-        f"{noun} {row_name!r} is unknown, allowed are {', '.join(rows)}; jointfmu new {table_name} lists "
-        "their values"
+        f"{noun} {row_name!r} is unknown, allowed are {', '.join(rows)}"
+        f"{f'; did you mean {similar[0]}?' if similar else ''}; jointfmu new {table_name} lists their values "
+        "and other names"
     )
 
 
 def _normalise_name(row_name: str) -> str:
-    """Name of a material or finish without case and hyphens, for comparisons."""
-    return row_name.lower().replace("-", " ").strip()
+    """Name of a material or finish without case, hyphens and underscores, for comparisons."""
+    return re.sub("[-_]", " ", row_name.lower()).strip()
 
 
 @dataclass(frozen=True, slots=True)

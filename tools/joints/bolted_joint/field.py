@@ -110,6 +110,7 @@ NOMINAL_PRESSURE = NominalPressureModel(
     mean_pressure=_mean_pressure,
     peak_pressure=_peak_pressure,
     load_capacity=_proof_load,
+    is_part_load=lambda output_name: output_name.startswith("F_bolt["),
 )
 """Nominal contact pressure of the bolted joint over its preload."""
 

@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from jointfmu_fmu_src.joint_parts.chart import Panel, Series
 
+from jointfmu.joints.bolted_joint.bodies import MODAL_DISPLACEMENT_DECIMALS
 from jointfmu.joints.bolted_joint.compliances import Compliances
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import (
@@ -18,21 +19,28 @@ from jointfmu.joints.model import Model
 from jointfmu.mechanics.footprint.distribution import NodalField
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
+from jointfmu.quantity.units import conversion_factor
 
-from ...common.shown import format_quantity
+from ...common.shown import choose_display_unit, format_quantity, format_unit
 from ...pages.report.figure import ComparisonRow, Figure
 from ...pages.report.load_history import LoadHistory
-from .field import PlaneLayout
+from .external_load import (
+    MAX_BOLT_OVER_TIGHTENING_FORCE,
+    OPEN_PRESSURE_RATIO,
+    compute_bolt_forces,
+    compute_opening_moment,
+)
+from .field import NOMINAL_PRESSURE, PlaneLayout
 from .gross_slip import PRELOAD_ENTRY_NAME, compute_friction_results, compute_preload_results
 from .picture import draw_plan, draw_section
-from .tensile_load import MAX_BOLT_OVER_TIGHTENING_FORCE, compute_bolt_forces
 
 MAX_PLOTTED_OVER_OPENING_LOAD = 1.3
 """Largest plotted tensile force over the opening load of the interface [1]."""
 MAX_BOLT_SHARE_EXCESS_OVER_MEAN = 0.05
 """Excess of the largest bolt share over the mean share [1], up to which bolts count as equally loaded."""
-EQUAL_BOLT_FORCE_TOLERANCE = 1e-3
-"""Difference of two bolt forces over the largest one [1], up to which they share a curve."""
+EQUAL_BOLT_FORCE_TOLERANCE = 10.0 * 10.0**-MODAL_DISPLACEMENT_DECIMALS
+"""Difference of two bolt forces over the largest change of a bolt force since tightening [1], up to which
+they share a curve: a few times the rounding of the modal displacements."""
 
 
 def make_bolted_joint_figures(load_history: LoadHistory) -> list[Figure]:
@@ -109,9 +117,12 @@ def make_preload_figures(load_history: LoadHistory) -> list[Figure]:
     table: list[tuple[str, ...]] = [
         ("preload", "stiffness along z", "stiffness along x", "gross slip at", "interface opens at")
     ]
+    capacity = NOMINAL_PRESSURE.load_capacity(file)
     for row in sorted(compute_preload_results(file)):
         values = zip(row, ("N", "N/m", "N/m", "N", "N"), strict=True)
-        table.append(tuple(_format_in_display_unit(value, unit) for value, unit in values))
+        preload, *cells = (_format_in_display_unit(value, unit) for value, unit in values)
+        excess = " (above the proof load)" if capacity and row.preload > capacity[0] else ""
+        table.append((f"{preload}{excess}", *cells))
     text = (
         f"The preload is uncertain: {file.sources[PRELOAD_ENTRY_NAME]}. Embedding takes "
         f"{_format_in_display_unit(file.values.embedding, 'N')} of each preload. The stiffness is that of "
@@ -152,13 +163,29 @@ def make_stiffness_figures(load_history: LoadHistory) -> list[Figure]:
     )
     text = _stiffness_text(compliances, remaining_preload, moment) + (
         f" A force of {_format_in_display_unit(opening, 'N')} along z opens the interface {location} (linear "
-        "estimate with these stiffnesses); a joint that peels opens at a lower load, as the plot shows. The "
+        "estimate with these stiffnesses); a joint that peels opens at a lower load, as the plot shows. "
+        f"{_opening_moment_text(spring, preload, moment)}The "
         f"whole interface slips at {_format_in_display_unit(limit, 'N')} along x or y; slip begins at the "
         "edges at a far lower load, and its loss is under Loops. The plot shows a tensile force up to "
         f"{MAX_PLOTTED_OVER_OPENING_LOAD:g} times the opening load, free in the other five motions, and up "
         f"to {MAX_BOLT_OVER_TIGHTENING_FORCE:g} times the force of a bolt at tightening."
     )
     return [Figure("The complete joint", text, [panel], table_rows=_stiffness_rows(compliances))]
+
+
+def _opening_moment_text(joint_spring: BoltedJointSpring, preload: float, bending_moment: float) -> str:
+    """Sentence with the moments about x and y at which the joint starts to open; empty if none is found."""
+    moments = [
+        f"{_format_in_display_unit(found, 'N.m')} about {axis}"
+        for i, axis in enumerate("xy")
+        if (found := compute_opening_moment(joint_spring, preload, bending_moment, i)) is not None
+    ]
+    if not moments:
+        return ""
+    return (
+        f"A moment of {' or '.join(moments)} opens the first point of the contact: its pressure falls to "
+        f"{OPEN_PRESSURE_RATIO:.0%} of that at tightening. "
+    )
 
 
 def _format_in_display_unit(value_in_si: float, si_unit: str) -> str:
@@ -171,7 +198,9 @@ def _stiffness_rows(joint_compliances: Compliances) -> list[tuple[str, ...]]:
     heads = ("complete joint", "interface alone", "members", "bolts alone", "interface", "members", "bolts")
     rows: list[tuple[str, ...]] = [("", *heads)]
     for name, unit, stiffnesses, shares in joint_compliances.compliance_table_rows():
-        cells = [_format_in_display_unit(value, unit) if value > 0.0 else "none" for value in stiffnesses]
+        shown = choose_display_unit(unit, max(stiffnesses))
+        scale, ending = conversion_factor(unit, shown), format_unit(shown)
+        cells = [f"{scale * value:.4g} {ending}" if value > 0.0 else "none" for value in stiffnesses]
         rows.append((name, *cells, *(f"{share:.1%}" for share in shares)))
     return rows
 
@@ -191,27 +220,26 @@ def _stiffness_text(joint_compliances: Compliances, remaining_preload: float, be
         + (f" with a moment of {bending_moment:g} N m" if bending_moment else "")
         + ", one at a time with the other five fixed. The stiffness of the complete "
         "joint is that of the FMU. The last three columns are shares of its compliance, by stored energy. "
-        "Members are a spring in series with interface and bolts; interface alone and bolts alone are "
-        f"between rigid sides. The interface has {share[2]:.1%} of the compliance along z and at most "
-        f"{largest:.1%} in any direction: {effect}. The bolts carry "
+        "Members is the stiffness of the complete joint divided by the share of the members; interface "
+        "alone and bolts alone are between rigid sides. So the columns do not add up to the complete joint: "
+        f"deforming members load the interface unevenly. The interface has {share[2]:.1%} of the compliance "
+        f"along z and at most {largest:.1%} in any direction: {effect}. The bolts carry "
         f"{joint_compliances.joint_load_factor:.3f} of a force along z (load factor n Phi_K of VDI 2230), "
         "with the other motions free; where the interface is open they carry the full force, as the plot "
         "shows."
     )
 
 
-def _group_equal_rows(columns_of_numbers: Array) -> list[list[int]]:
-    """Group the rows of a table of numbers: lists of the indices of rows with equal values.
+def _group_equal_bolts(bolt_forces: Array) -> list[list[int]]:
+    """Group the bolts with equal forces (bolts, loads) [N], the first load at tightening: lists of indices.
 
-    The groups are in the order of their first rows.
+    The groups are in the order of their first bolts.
     """
     groups: list[list[int]] = []
-    scale = float(np.max(np.abs(columns_of_numbers), initial=0.0))
-    for j, row in enumerate(columns_of_numbers):
+    scale = float(np.max(np.abs(bolt_forces - bolt_forces[:, :1]), initial=0.0))
+    for j, row in enumerate(bolt_forces):
         for group in groups:
-            if np.allclose(
-                row, columns_of_numbers[group[0]], rtol=0.0, atol=EQUAL_BOLT_FORCE_TOLERANCE * scale
-            ):
+            if np.allclose(row, bolt_forces[group[0]], rtol=0.0, atol=EQUAL_BOLT_FORCE_TOLERANCE * scale):
                 group.append(j)
                 break
         else:
@@ -233,7 +261,7 @@ def _bolt_force_chart(
     columns = 1e-3 * compute_bolt_forces(joint_spring, preload, bending_moment, pulls).T
     series = [
         Series(_name_bolts(bolts), 1e-3 * pulls[: len(columns[bolts[0]])], columns[bolts[0]])
-        for bolts in _group_equal_rows(columns)
+        for bolts in _group_equal_bolts(columns)
     ]
     return Panel(
         "Bolt forces under a tensile force along z", "tensile force along z [kN]", "bolt force [kN]", series

@@ -95,7 +95,9 @@ UNCERTAINTY_CURVES = LoadCurves(
     ramped_input=replace(
         KIND.variables["preload"], doc="force of each bolt after embedding, at its temperature"
     ),
-    outputs=tuple(KIND.variables[name] for name in ("K_zz", "K_xx", "C_zz", "C_xx")),
+    outputs=tuple(
+        KIND.variables[name] for name in ("K_zz", "K_xx", "K_yy", "K_rx", "K_ry", "K_rz", "C_zz", "C_xx")
+    ),
     knot_count=17,
     derived_outputs=(
         DerivedOutput(
@@ -114,7 +116,8 @@ UNCERTAINTY_CURVES = LoadCurves(
             Variable(
                 "loss_factor",
                 "1",
-                f"of a loop under a shear of {LOOP_SHEAR_OVER_BOLT_FORCE:g} times the bolts' force",
+                f"of a loop under a shear of {LOOP_SHEAR_OVER_BOLT_FORCE:g} times the force of all bolts; "
+                "jointfmu new prints it at another shear force",
                 0.1,
             ),
             loss_factor,

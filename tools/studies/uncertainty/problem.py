@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -38,6 +38,7 @@ class UncertaintyStudy:
     common_settings      : {name: value} that all runs of an FMU share
     run_evaluator        : evaluation of one run
     identifying_record   : JSON object that identifies joint or FMU, and ramp
+    derived_meanings     : {output: meaning} of the quantities of a joint that its FMU does not output
     """
 
     study_subject: str
@@ -48,6 +49,7 @@ class UncertaintyStudy:
     common_settings: Mapping[str, Any]
     run_evaluator: RampEvaluator
     identifying_record: Mapping[str, Any]
+    derived_meanings: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def variable_units(self) -> dict[str, str]:
@@ -82,7 +84,8 @@ def define_joint_study(
     ramp_point_count : number of points of the ramp
 
     A parameter without a setting is uniformly distributed over its range in the file, if it has one. The load
-    is uniformly distributed if its start value in the file has a range and `ramp_end` is None.
+    is uniformly distributed if its start value in the file has a range and `ramp_end` is None; the nominal
+    load is then this start value.
 
     Raises ValueError for an unknown name, a value outside its interval, or a distribution of a parameter that
     cannot be uncertain.
@@ -101,6 +104,7 @@ def define_joint_study(
     if _INPUTS_SECTION_PREFIX + curves.ramped_input.name in parameter_file.ranges and ramp_end is None:
         stated.add(curves.ramped_input.name)
     study_settings = dict.fromkeys(sorted(stated), INTERVAL_SETTING) | dict(study_settings)
+    has_file_range = study_settings.get(curves.ramped_input.name) == INTERVAL_SETTING
     study_settings = {
         name: _format_load_interval(curves, parameter_file)
         if (name, value) == (curves.ramped_input.name, INTERVAL_SETTING)
@@ -124,7 +128,9 @@ def define_joint_study(
         )
     load = next((parameter for parameter in order if parameter.name == curves.ramped_input.name), None)
     median = None if load is None or relative else float(load.distribution.median())
-    single = set_load if set_load is not None else median
+    file_load = parameter_file.start_value(curves.ramped_input.name) - curves.lost_load(parameter_file.values)
+    nominal_load = file_load if has_file_range and file_load > 0.0 else median
+    single = set_load if set_load is not None else nominal_load
     end = (
         ramp_end
         if ramp_end is not None or single is not None
@@ -146,8 +152,17 @@ def define_joint_study(
     exposed = {*model.parameter_fields(), curves.ramped_input.name}
     reopens = any(parameter.name not in exposed for parameter in order)
     ramp = JointRampEvaluator(nominal, loads, relative, reopens)
+    meanings = {each.output_variable.name: each.output_variable.doc for each in curves.derived_outputs}
     return UncertaintyStudy(
-        parameter_file.joint, curves.ramped_input, loads, curves.quantity_units, order, {}, ramp, record
+        parameter_file.joint,
+        curves.ramped_input,
+        loads,
+        curves.quantity_units,
+        order,
+        {},
+        ramp,
+        record,
+        meanings,
     )
 
 

@@ -1,5 +1,6 @@
 """Results of an uncertainty propagation as table, CSV, JSON and plots."""
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,12 +20,19 @@ MAX_PRINTED_LOADS = 6
 
 
 def select_table_loads(uncertainty_study: UncertaintyStudy) -> list[float]:
-    """Select the loads above zero of the ramp that the printed table shows."""
-    return [
-        float(load)
-        for load in uncertainty_study.loads[_select_table_indices(uncertainty_study.loads)]
-        if load > 0.0
-    ]
+    """Select the loads above zero of the ramp that the printed table shows.
+
+    If a single load is uncertain, the result also has the upper end of its interval.
+    """
+    loads = uncertainty_study.loads[_select_table_indices(uncertainty_study.loads)].tolist()
+    if len(loads) == 1:
+        loads += [
+            parameter.support_interval[1]
+            for parameter in uncertainty_study.uncertain_parameters
+            if parameter.name == uncertainty_study.ramped_input.name
+            and np.isfinite(parameter.support_interval[1])
+        ]
+    return [load for load in loads if load > 0.0]
 
 
 def _select_table_indices(ramp_values: Any) -> Any:
@@ -137,10 +145,15 @@ def format_study_table(
     if sensitivity is not None:
         lines += _format_sobol_table(uncertainty_study, sensitivity, uncertainty_bands.nonzero_outputs)
     varied = ", ".join(
-        f"{parameter.name} = {parameter.distribution_text}"
+        f"{parameter.name} = {_round_numbers(parameter.distribution_text)}"
         for parameter in uncertainty_study.uncertain_parameters
     )
     lines.append(f"over {uncertainty_study.ramped_input.name}: {uncertainty_study.ramped_input.doc}")
+    lines += [
+        f"{name}: {meaning}"
+        for name, meaning in uncertainty_study.derived_meanings.items()
+        if name in uncertainty_bands.nonzero_outputs
+    ]
     lines.append(
         f"varied: {varied}{'' if uncertainty_bands.has_output_scatter else ': no output depends on it'}"
     )
@@ -158,6 +171,11 @@ def format_study_table(
         )
         lines.append(f"the first refused: {example}: {uncertainty_bands.refused_samples.refusal_message}")
     return "\n".join(lines)
+
+
+def _round_numbers(distribution_text: str) -> str:
+    """Text of a distribution with its long decimal numbers rounded to six digits."""
+    return re.sub(r"\d+\.\d{6,}(?:e[-+]?\d+)?", lambda number: f"{float(number[0]):.6g}", distribution_text)
 
 
 def _format_sobol_table(

@@ -48,7 +48,7 @@ def define_fmu_study(
         if name == load_ramp.input:
             raise ValueError(f"{fmu_path}: {name} is the input of the ramp; do not set it too")
     if INTERVAL_SETTING in study_settings.values():
-        file = _load_contained_parameter_file(fmu_path)
+        file = load_contained_parameter_file(fmu_path)
         study_settings = {
             name: resolve_interval_setting(name, value, file) for name, value in study_settings.items()
         }
@@ -78,7 +78,7 @@ def define_fmu_study(
     )
 
 
-def _load_contained_parameter_file(fmu_path: Path) -> ParameterFile:
+def load_contained_parameter_file(fmu_path: Path) -> ParameterFile:
     """Load the parameter file that an FMU contains with its experiments.
 
     Raises ValueError if the FMU contains none.

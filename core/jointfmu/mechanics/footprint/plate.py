@@ -144,17 +144,18 @@ def check_holes(plate: BoltedPlate) -> None:
     half = 0.5 * np.array([plate.length, plate.width])
     for i, bolt in enumerate(bolts):
         if np.any(np.abs(bolt) + radius >= half):
-            x, y = half - radius
+            x, y = 1e3 * (half - radius)
             raise ValueError(
-                f"bolt {i + 1} at ({bolt[0]:g}, {bolt[1]:g}) m with a hole of "
-                f"{2.0 * radius:g} m is not inside "
-                f"the plate; allowed are |x| < {x:g} m and |y| < {y:g} m"
+                f"bolt {i + 1} at ({1e3 * bolt[0]:g}, {1e3 * bolt[1]:g}) mm with a hole of "
+                f"{2e3 * radius:g} mm is not inside the plate; allowed are |x| < {x:.4g} mm and |y| < "
+                f"{y:.4g} mm"
             )
         distances = np.hypot(*(bolts[:i] - bolt).T)
         if distances.size and distances.min() <= plate.hole_diameter:
             raise ValueError(
                 f"the holes of bolts {distances.argmin() + 1} and {i + 1} overlap: hole_diameter = "
-                f"{plate.hole_diameter:g} m is outside (0, {distances.min():g}), their distance"
+                f"{1e3 * plate.hole_diameter:g} mm is outside (0, {1e3 * distances.min():.4g}) mm, their "
+                "distance"
             )
 
 

@@ -37,6 +37,11 @@ MAX_HOLE_OVER_THREAD_DIAMETER = 3.0
 """Largest diameter of the hole over diameter of the thread [1]."""
 DEFAULT_ROUGHNESS_HEIGHT_RZ = 10e-6
 """Maximum height Rz [m] of faces whose roughness is not stated, for embedding: the usual one of Ra 1.6 um."""
+LARGE_BED_THICKNESS_RATIO = 0.3
+"""Thickness T of plate 2 over the square root of the plate area [1] at which plate 2 is about as stiff as a
+large solid bed: T = 3 pi (1 - nu^2) a/16 for a disc of radius a and the same area. Then a column of length T
+has the rotational stiffness of a rigid disc on a half-space, 8 G a^3/(3 (1 - nu)) (Johnson, Contact
+Mechanics)."""
 THREAD_DEPTH_OVER_DIAMETER = 1.0
 """Depth of a tapped thread over the diameter of the thread [1]: a usual value in steel."""
 
@@ -148,9 +153,14 @@ def read_drawing(drawing_options: DrawingOptions) -> DrawnJoint:
     tightening.add_to_sheet(sheet)
     preload = tightening.preload_force
     if not loss < preload:
+        cause, remedy = "", "--preload"
+        if drawing_options["torque"] is not None:
+            torque = parse_quantity("torque", drawing_options["torque"]).stated_value
+            cause = f" by --torque = {drawing_options['torque']!r}, which is {torque:.4g} N.m"
+            remedy = "--torque"
         raise ValueError(
-            f"embedding takes {loss:.4g} N, the whole preload of {preload:.4g} N: state a smaller "
-            "--embedding or a larger --preload"
+            f"embedding takes {loss:.4g} N, the whole preload of {preload:.4g} N{cause}: state a larger "
+            f"{remedy} or a smaller --embedding"
         )
     for choice in ("critical_area", "spot_stiffness"):
         default = {"critical_area": "continuity", "spot_stiffness": "hertz"}[choice]
@@ -189,6 +199,8 @@ def make_joint(drawing_options: DrawingOptions) -> NewJoint:
     facts = _compute_design_results(file, bolt, drawn.height_range, tightening.preload_force)
     if is_rigid:
         facts |= _compute_interface_share(facts["interface_K_zz"][0] / file.values.n_bolts, bolt)
+    elif drawing_options["tapped"]:
+        facts |= _compute_bed_thickness(drawn.bolted_plates.bolted_plate)
     if is_rigid and drawing_options["sides"] is None:
         warnings.append(
             "the plates of the FMU are rigid; for the complete joint, state --thickness of both plates"
@@ -501,6 +513,16 @@ def _compute_interface_share(
         "2230, loaded at the heads; the members of the FMU are rigid (sides = rigid)"
     )
     return {"interface_share": (share, "1", text)}
+
+
+def _compute_bed_thickness(bolted_plate: BoltedPlate) -> dict[str, tuple[float, str, str]]:
+    """Result for the user: thickness of plate 2 that stands for a bed larger than the plate."""
+    thickness = LARGE_BED_THICKNESS_RATIO * float(np.sqrt(bolted_plate.length * bolted_plate.width))
+    text = (
+        "thickness T2 that gives plate 2 about the stiffness of a large solid bed; another T2 changes all "
+        "stiffnesses of the joint, see --thickness and --attached"
+    )
+    return {"bed_thickness": (thickness, "m", text)}
 
 
 def _describe_bolt_with_washers(clamped_bolt: ClampedBolt) -> dict[str, tuple[float, str, str]]:

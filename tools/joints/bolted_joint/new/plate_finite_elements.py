@@ -20,6 +20,7 @@ from jointfmu.quantity import Array, flatten_parameters
 from ....fem import require_fem_packages
 from ....inputs.drawing.part import NewJoint
 from ....inputs.drawing.vdi2230 import ClampedPart
+from ..external_load import OPEN_PRESSURE_RATIO, compute_opening_moment
 from . import ATTACHMENT_SURFACES
 
 if TYPE_CHECKING:
@@ -300,12 +301,14 @@ def compute_complete_joint(
 
 def compute_elastic_joint_results(parameter_file: ParameterFile, preload: float) -> DerivedResults:
     """Compute stiffness and load results of a joint with elastic sides, at a preload [N] of each bolt."""
-    compliances = BoltedJointSpring.from_joint(parameter_file.values).compliances(preload)
+    spring = BoltedJointSpring.from_joint(parameter_file.values)
+    compliances = spring.compliances(preload)
     remaining_preload = float(working_preload(parameter_file.values, preload))
     attachment = parameter_file.values.bodies.attached
     return (
         _compute_stiffness_results(compliances, attachment, preload)
         | _compute_load_results(compliances, remaining_preload, attachment)
+        | _compute_opening_moments(spring, preload, attachment)
         | _compute_interface_share(compliances)
     )
 
@@ -329,9 +332,27 @@ def _compute_stiffness_results(
         members[f"members_{name}"] = (
             alone,
             unit,
-            "stiffness of the members, in series with interface and bolts",
+            f"joint_{name} divided by the share of the members; it depends on the pressure distribution",
         )
     return rows | members
+
+
+def _compute_opening_moments(
+    joint_spring: BoltedJointSpring, preload: float, attachment_kind: str
+) -> DerivedResults:
+    """Moments about x and about y at which the joint starts to open, as far as they are found."""
+    where = ATTACHMENT_SURFACES[attachment_kind]
+    moments = {axis: compute_opening_moment(joint_spring, preload, 0.0, i) for i, axis in enumerate("xy")}
+    return {
+        f"opening_moment_{axis}": (
+            moment,
+            "N.m",
+            f"moment about {axis} at {where}, other motions free, at which the first point of the contact "
+            f"opens: its pressure falls to {OPEN_PRESSURE_RATIO:.0%} of that at tightening",
+        )
+        for axis, moment in moments.items()
+        if moment is not None
+    }
 
 
 def _compute_interface_share(joint_compliances: Compliances) -> DerivedResults:

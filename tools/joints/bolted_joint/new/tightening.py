@@ -27,8 +27,10 @@ class AssemblyPreload:
     min_preload_force, max_preload_force : range of the force [N]; both equal `preload_force` if none is known
     preload_origin       : origin of the value, see parameters.VALUE_ORIGINS
     preload_source       : source of value and range
-    yield_utilisation    : comparative stress over yield strength [1] at `preload_force`; None: the property
-                           class is not known
+    friction_at_max_preload : coefficient of friction in the thread [1] at `max_preload_force`; None: that at
+                           `preload_force`
+    yield_utilisation, max_yield_utilisation : comparative stress over yield strength [1] at `preload_force`
+                           and at `max_preload_force`; None: the property class is not known
     preload_warnings     : one line each
     """
 
@@ -37,7 +39,9 @@ class AssemblyPreload:
     max_preload_force: float
     preload_origin: str
     preload_source: str
+    friction_at_max_preload: float | None = None
     yield_utilisation: float | None = None
+    max_yield_utilisation: float | None = None
     preload_warnings: tuple[str, ...] = ()
 
     @property
@@ -67,6 +71,9 @@ class AssemblyPreload:
                 f"2230; allowed are {vdi2230.YIELD_UTILISATION:g})"
             )
             facts["yield_utilisation"] = (self.yield_utilisation, "1", text)
+        if self.has_range and self.max_yield_utilisation is not None:
+            text = "share of the yield strength that is used at preload_high"
+            facts["yield_utilisation_high"] = (self.max_yield_utilisation, "1", text)
         return facts
 
 
@@ -162,6 +169,7 @@ def _preload_from_torque(
         max(preload.max_preload_force, high),
         preload.preload_origin,
         f"{preload.preload_source}; friction alone: {low * 1e-3:.4g} to {high * 1e-3:.4g} kN",
+        mu_G.lower_limit if high > preload.max_preload_force else None,
     )
 
 
@@ -203,9 +211,9 @@ def _add_scatter_range(
 def _check_bolt_strength(
     drawing_options: DrawingOptions, stated_preload: AssemblyPreload, thread: Thread, thread_friction: float
 ) -> AssemblyPreload:
-    """Add the utilisation of the yield strength to an assembly preload, and a warning if it is too high.
+    """Add the utilisation of the yield strength to an assembly preload, and warnings if it is too high.
 
-    For a preload above the proof load, `common.pressure` warns.
+    `common.pressure` warns if the preload or its range exceeds the proof load.
 
     Raises ValueError for a torque whose preload is implausibly small, or at which the bolt yields (without a
     stated property class: the strongest bolt).
@@ -235,19 +243,42 @@ def _check_bolt_strength(
                 f"of {bolt}; expected up to {highest:.3g} N.m (VDI 2230: "
                 f"{vdi2230.YIELD_UTILISATION:.0%}){advice}"
             )
-    if stated is None:
-        return stated_preload
     proof_load = property_class_strength(name, "proof", thread) * vdi2230.stress_area(thread)
+    max_friction = stated_preload.friction_at_max_preload
+    max_utilisation = (
+        vdi2230.comparative_stress(
+            thread,
+            stated_preload.max_preload_force,
+            thread_friction if max_friction is None else max_friction,
+        )
+        / strength
+    )
+    allowed_utilisation = vdi2230.YIELD_UTILISATION * (1.0 + vdi2230.MAX_YIELD_UTILISATION_EXCESS)
     warnings = []
-    if stated_preload.preload_force <= proof_load and utilisation > vdi2230.YIELD_UTILISATION * (
-        1.0 + vdi2230.MAX_YIELD_UTILISATION_EXCESS
-    ):
-        warnings = [
+    if stated and stated_preload.preload_force <= proof_load and utilisation > allowed_utilisation:
+        warnings.append(
             f"preload = {stated_preload.preload_force:.4g} N uses {utilisation:.0%} of the yield strength of "
             f"{bolt} in tightening (VDI 2230, von Mises), allowed are {vdi2230.YIELD_UTILISATION:.0%}: "
             f"{allowed:.4g} N"
-        ]
+        )
+    if stated_preload.has_range and max_utilisation > allowed_utilisation:
+        factor = vdi2230.YIELD_UTILISATION / max_utilisation
+        advice = f"--preload {stated_preload.preload_force * factor:.4g}N"
+        if drawing_options["torque"] is not None:
+            torque = parse_quantity("torque", drawing_options["torque"]).stated_value
+            advice = f"--torque {torque * factor:.3g}"
+        warnings.append(
+            f"preload_high = {stated_preload.max_preload_force:.4g} N uses {max_utilisation:.0%} of the "
+            f"yield strength of {bolt} in tightening (VDI 2230, von Mises), allowed are "
+            f"{vdi2230.YIELD_UTILISATION:.0%}: with this scatter and friction, state at most {advice}"
+        )
+    if stated is None:
+        return replace(stated_preload, preload_warnings=tuple(warnings))
     source = f"{stated_preload.preload_source}; {vdi2230.describe_stated_bolt(thread.thread_name, name)}"
     return replace(
-        stated_preload, preload_source=source, yield_utilisation=utilisation, preload_warnings=tuple(warnings)
+        stated_preload,
+        preload_source=source,
+        yield_utilisation=utilisation,
+        max_yield_utilisation=max_utilisation,
+        preload_warnings=tuple(warnings),
     )
