@@ -14,7 +14,14 @@ from ...common.judgement import Plausibility, assess_law_stiffness, find_rms_hei
 from ...common.options import format_option_flag, require_package
 from ...common.pressure import find_nominal_pressure_model, judge_joint_stiffness, warn_missing_members
 from ...exchange.export import exports
-from ...exchange.export.exports import CONTENTS_BY_FORMAT, DEFAULT_MAX_LOAD_ERROR, EXPORT_CONTENTS, INTERFACE_FORMATS, ROBOT_FORMATS, STIFFNESS_FORMATS
+from ...exchange.export.exports import (
+    CONTENTS_BY_FORMAT,
+    DEFAULT_MAX_LOAD_ERROR,
+    EXPORT_CONTENTS,
+    INTERFACE_FORMATS,
+    ROBOT_FORMATS,
+    STIFFNESS_FORMATS,
+)
 from ...exchange.export.target_model import AXIS_ORDER, SI_UNIT_SET, UNIT_SETS, TargetModel
 from ..command import CommandResult, SubParsers, declare_argument, declare_command, parse_joint_name
 from ..outputs import declare_output
@@ -26,7 +33,10 @@ _DEFAULT_NODE_POSITION = (0.0, 0.0, 0.0)
 """Default position of a node of a complete joint: the centroid of the contact."""
 _FORMATS_WITH_ELEMENT_NUMBERS = {"first": ("ansys", "calculix", "abaqus"), "first_set": ("ansys",)}
 """{argument: formats that need this first number together with --nodes}."""
-_FIRST_FREE_NUMBER_MEANINGS = {"first": "a number above all elements of your model", "first_set": "a number above all element types and sets of real constants of your model"}
+_FIRST_FREE_NUMBER_MEANINGS = {
+    "first": "a number above all elements of your model",
+    "first_set": "a number above all element types and sets of real constants of your model",
+}
 """Meanings for error messages: {argument for a first free number: meaning}."""
 _PRINTED_QUANTITY_UNITS = {"K_r": "N.m/rad", "K_": "N/m", "C_": "N.s/m"}
 """{first letters of a printed quantity: its SI unit}."""
@@ -34,23 +44,41 @@ _PRINTED_QUANTITY_UNITS = {"K_r": "N.m/rad", "K_": "N/m", "C_": "N.s/m"}
 
 def add_command(command_parsers: SubParsers) -> None:
     """Declare the command `jointfmu export` with its options."""
-    export = declare_command(command_parsers, "export", _run_export, "write a joint for a finite-element solver, Modelica, a robot simulator, or as CSV")
+    export = declare_command(
+        command_parsers,
+        "export",
+        _run_export,
+        "write a joint for a finite-element solver, Modelica, a robot simulator, or as CSV",
+    )
     with_springs = exports.find_joints_with_export("springs")
     forms = [*CONTENTS_BY_FORMAT, *ROBOT_FORMATS]
-    export.add_argument("form", choices=forms, metavar="FORMAT", help=f"program or format to write for: {', '.join(forms)}")
+    export.add_argument(
+        "form", choices=forms, metavar="FORMAT", help=f"program or format to write for: {', '.join(forms)}"
+    )
     export.add_argument(
         "what",
         metavar="WHAT",
         help=f"springs: stiffness of the {', '.join(KINDS[joint].title for joint in with_springs)}, as a "
         "matrix between two nodes; with rigid sides or --interface as springs and dashpots between node "
         "pairs. contact: table of pressure over overclosure. curve: table of load over displacement, of a "
-        f"bolted joint without its members. For {', '.join(ROBOT_FORMATS)}, WHAT is the parameter file of a drive or its name "
+        f"bolted joint without its members. For {', '.join(ROBOT_FORMATS)}, WHAT is the parameter file of a "
+        "drive or its name "
         "in the catalogue",
     )
     joint = export.add_mutually_exclusive_group()
     declare_argument(joint, "--params", Path, "parameter file of the joint (TOML), in place of --joint")
-    joint.add_argument("--joint", type=parse_joint_name, choices=list(KINDS), default=with_springs[0], help=f"joint to write with its default parameters (default: {with_springs[0]})")
-    complete = {name for joint in exports.find_joints_with_export("stiffness") for name in exports.load_joint_exports(joint).working_point}
+    joint.add_argument(
+        "--joint",
+        type=parse_joint_name,
+        choices=list(KINDS),
+        default=with_springs[0],
+        help=f"joint to write with its default parameters (default: {with_springs[0]})",
+    )
+    complete = {
+        name
+        for joint in exports.find_joints_with_export("stiffness")
+        for name in exports.load_joint_exports(joint).working_point
+    }
     for name, texts in _working_point_meanings().items():
         if name in complete:
             needed = [] if "(default" in texts[0] else ["needed for springs with rigid sides"]
@@ -60,20 +88,41 @@ def add_command(command_parsers: SubParsers) -> None:
     text = "springs: write the interface alone, between node pairs, for your own model of plates and bolts"
     export.add_argument("--interface", action="store_true", default=None, help=text)
     for side in (1, 2):
-        text = f"springs of the complete joint: position of the node of side {side} relative to the centroid of the contact, in the axes of your model and the length unit of --units (default: 0 0 0)"
+        text = (
+            f"springs of the complete joint: position of the node of side {side} relative to the centroid "
+            "of the contact, in the axes of your model and the length unit of --units (default: 0 0 0)"
+        )
         export.add_argument(f"--node-{side}", type=float, nargs=3, metavar=("X", "Y", "Z"), help=text)
-    text = "springs: table of your node pairs, columns node_1 [1], node_2 [1], x [mm], y [mm], area [mm2]; a column pressure [MPa] replaces --preload, --moment and --temperature"
+    text = (
+        "springs: table of your node pairs, columns node_1 [1], node_2 [1], x [mm], y [mm], area [mm2]; a "
+        "column pressure [MPa] replaces --preload, --moment and --temperature"
+    )
     declare_argument(export, "--nodes", Path, text, "CSV")
-    declare_argument(export, "--first", int, "springs: number of the first element and node that are written; choose it above those of your model (default: 1)")
-    text = "ansys: number of the first element type and real constant that are written; choose it above those of your model (default: 1)"
+    declare_argument(
+        export,
+        "--first",
+        int,
+        "springs: number of the first element and node that are written; choose it above those of your "
+        "model (default: 1)",
+    )
+    text = (
+        "ansys: number of the first element type and real constant that are written; choose it above those "
+        "of your model (default: 1)"
+    )
     declare_argument(export, "--first-set", int, text)
     text = "springs: axis of your model that is normal to the contact (default: z)"
     export.add_argument("--normal", choices=list(AXIS_ORDER), help=text)
     text = f"units of the written file: length-force-stress-mass (default: {SI_UNIT_SET.unit_set_name})"
     export.add_argument("--units", choices=list(UNIT_SETS), default=SI_UNIT_SET.unit_set_name, help=text)
-    text = f"contact, curve: largest relative error of linear interpolation in the table (default: {DEFAULT_MAX_LOAD_ERROR:g}; contact for calculix: larger, if 200 rows do not suffice for it)"
+    text = (
+        "contact, curve: largest relative error of linear interpolation in the table (default: "
+        f"{DEFAULT_MAX_LOAD_ERROR:g}; contact for calculix: larger, if 200 rows do not suffice for it)"
+    )
     declare_argument(export, "--error", float, text, "E")
-    text = f"{', '.join(ROBOT_FORMATS)}: largest torque [N.m] up to which the written spring is fitted to the drive (default: rated torque)"
+    text = (
+        f"{', '.join(ROBOT_FORMATS)}: largest torque [N.m] up to which the written spring is fitted to the "
+        "drive (default: rated torque)"
+    )
     declare_argument(export, "--torque", float, text, "T")
     declare_output(export, "--out", EXPORTED_TEXT_FILE, "file to write", required=True)
 
@@ -96,7 +145,10 @@ def _run_export(args: argparse.Namespace) -> CommandResult:
         raise ValueError(f"argument WHAT: invalid choice: {args.what!r} (choose from {choices})")
     _refuse_unused_options(args, {"torque": f"{args.form}; it is for {', '.join(ROBOT_FORMATS)}"})
     if args.what not in CONTENTS_BY_FORMAT[args.form]:
-        raise ValueError(f"{args.form} {args.what} cannot be written; {args.form} has {', '.join(CONTENTS_BY_FORMAT[args.form])}")
+        raise ValueError(
+            f"{args.form} {args.what} cannot be written; {args.form} has "
+            f"{', '.join(CONTENTS_BY_FORMAT[args.form])}"
+        )
     file = load_parameter_file(args.params) if args.params else load_default(args.joint)
     _check_options(args, file)
     written = _create_export(args, file)
@@ -109,26 +161,50 @@ def _run_export(args: argparse.Namespace) -> CommandResult:
     is_complete = args.interface or _exports_complete_joint(args, file)
     missing = [] if is_complete else warn_missing_members(file)
     stiffness_judgement = _judge_export(args, file).prepend_warnings([*written.warnings, *missing])
-    return CommandResult(json_document={**facts, **written.printed_quantities}, output_lines=lines, stiffness_judgement=stiffness_judgement)
+    return CommandResult(
+        json_document={**facts, **written.printed_quantities},
+        output_lines=lines,
+        stiffness_judgement=stiffness_judgement,
+    )
 
 
 def _unit_of_printed_quantity(quantity_name: str) -> str:
     """SI unit of a printed quantity; empty for a number without unit."""
-    return next((unit for start, unit in _PRINTED_QUANTITY_UNITS.items() if quantity_name.startswith(start)), "")
+    return next(
+        (unit for start, unit in _PRINTED_QUANTITY_UNITS.items() if quantity_name.startswith(start)), ""
+    )
 
 
 def _exports_complete_joint(args: argparse.Namespace, parameter_file: ParameterFile) -> bool:
     """Whether to export the stiffness matrix of the complete joint, instead of springs of the interface."""
     has_members = getattr(parameter_file.values, "has_elastic_members", False)
-    return args.what == "springs" and args.form in STIFFNESS_FORMATS and not args.interface and (has_members or args.form not in INTERFACE_FORMATS)
+    return (
+        args.what == "springs"
+        and args.form in STIFFNESS_FORMATS
+        and not args.interface
+        and (has_members or args.form not in INTERFACE_FORMATS)
+    )
 
 
 def _export_drive(args: argparse.Namespace) -> CommandResult:
     """Write a drive for a robot simulator; the output lists effects that the format cannot represent."""
-    idle = ("params", "nodes", "first", "first_set", "normal", "error", "interface", "node_1", "node_2", *_working_point_meanings())
+    idle = (
+        "params",
+        "nodes",
+        "first",
+        "first_set",
+        "normal",
+        "error",
+        "interface",
+        "node_1",
+        "node_2",
+        *_working_point_meanings(),
+    )
     _refuse_unused_options(args, dict.fromkeys(idle, args.form))
     if args.units != SI_UNIT_SET.unit_set_name:
-        raise ValueError(f"--units = {args.units}: {args.form} is always in {SI_UNIT_SET.unit_set_name}; leave --units out")
+        raise ValueError(
+            f"--units = {args.units}: {args.form} is always in {SI_UNIT_SET.unit_set_name}; leave --units out"
+        )
     from ...api import load
     from ...exchange.robots.writing import format_drive
     from ...joints.harmonic_drive.transmission import make_transmission
@@ -136,7 +212,13 @@ def _export_drive(args: argparse.Namespace) -> CommandResult:
     with require_package("measure the file", "mujoco"):
         text, lines, facts = format_drive(args.form, make_transmission(load(args.what).file), args.torque)
     write_text(args.out, text)
-    return CommandResult(json_document={"written": str(args.out), "format": args.form, **facts}, output_lines=[f"wrote {args.out}: {facts['drive']} for {args.form}", *(f"  {line}" for line in lines)])
+    return CommandResult(
+        json_document={"written": str(args.out), "format": args.form, **facts},
+        output_lines=[
+            f"wrote {args.out}: {facts['drive']} for {args.form}",
+            *(f"  {line}" for line in lines),
+        ],
+    )
 
 
 def _judge_export(args: argparse.Namespace, parameter_file: ParameterFile) -> Plausibility:
@@ -149,7 +231,12 @@ def _judge_export(args: argparse.Namespace, parameter_file: ParameterFile) -> Pl
         mesh = read_node_pairs(args.nodes)
         if mesh.contact_pressure is not None:
             mean = float(mesh.contact_pressure @ mesh.contact_area / mesh.contact_area.sum())
-            return assess_law_stiffness(KINDS[parameter_file.joint].extract_law(parameter_file.values), [mean], find_rms_height(parameter_file), float(mesh.contact_pressure.max()))
+            return assess_law_stiffness(
+                KINDS[parameter_file.joint].extract_law(parameter_file.values),
+                [mean],
+                find_rms_height(parameter_file),
+                float(mesh.contact_pressure.max()),
+            )
     return judge_joint_stiffness(parameter_file, None if load is None else [load])
 
 
@@ -172,17 +259,26 @@ def _create_export(args: argparse.Namespace, parameter_file: ParameterFile) -> "
     if _exports_complete_joint(args, parameter_file):
         for name in ("node_1", "node_2"):
             if not np.all(np.isfinite(getattr(args, name) or _DEFAULT_NODE_POSITION)):
-                raise ValueError(f"{format_option_flag(name)} = {getattr(args, name)}: expected three finite numbers")
+                raise ValueError(
+                    f"{format_option_flag(name)} = {getattr(args, name)}: expected three finite numbers"
+                )
         nodes = np.array([args.node_1 or _DEFAULT_NODE_POSITION, args.node_2 or _DEFAULT_NODE_POSITION])
         placing = TargetModel(units, args.normal or "z", args.first or 1, args.first_set or 1)
         return writing.export_stiffness(args.form, parameter_file, state, nodes, placing)
     mesh = read_node_pairs(args.nodes) if args.nodes else None
     first, text = next(iter(exports.load_joint_exports(parameter_file.joint).working_point.items()), ("", ""))
     if mesh is not None and mesh.contact_pressure is not None and state is not None:
-        raise ValueError(f"{mesh.csv_path} states the pressures; leave out {format_option_flag(first)}, or its column 'pressure'")
+        raise ValueError(
+            f"{mesh.csv_path} states the pressures; leave out {format_option_flag(first)}, or its column "
+            "'pressure'"
+        )
     if (mesh is None or mesh.contact_pressure is None) and state is None and first:
-        raise ValueError(f"springs need {format_option_flag(first)}, {text}, or --nodes with a column pressure")
-    placing = TargetModel(units, args.normal or "z", args.first or 1, args.first_set or 1, defines_nodes=mesh is None)
+        raise ValueError(
+            f"springs need {format_option_flag(first)}, {text}, or --nodes with a column pressure"
+        )
+    placing = TargetModel(
+        units, args.normal or "z", args.first or 1, args.first_set or 1, defines_nodes=mesh is None
+    )
     return writing.export_springs(args.form, parameter_file, state, mesh, placing)
 
 
@@ -218,7 +314,14 @@ def _check_working_point(args: argparse.Namespace, parameter_file: ParameterFile
     """Raise ValueError if a working point is set but not used, or if a required one is missing."""
     joint_name = parameter_file.joint
     used = {} if args.what == "contact" else exports.load_joint_exports(joint_name).working_point
-    _refuse_unused_options(args, {name: f"the {args.what} of a {joint_name}" for name in _working_point_meanings() if name not in used})
+    _refuse_unused_options(
+        args,
+        {
+            name: f"the {args.what} of a {joint_name}"
+            for name in _working_point_meanings()
+            if name not in used
+        },
+    )
     stated = [name for name in used if getattr(args, name) is not None]
     first, text = next(iter(used.items()), ("", ""))
     if stated and first not in stated:
@@ -258,4 +361,7 @@ def _check_options(args: argparse.Namespace, parameter_file: ParameterFile) -> N
         if value is None and args.nodes is not None and args.form in _FORMATS_WITH_ELEMENT_NUMBERS[name]:
             raise ValueError(f"--nodes needs {option}, {_FIRST_FREE_NUMBER_MEANINGS[name]}")
     if args.form == "modelica" and args.units != SI_UNIT_SET.unit_set_name:
-        raise ValueError(f"--units = {args.units}: a Modelica table is always in {SI_UNIT_SET.unit_set_name}; leave --units out")
+        raise ValueError(
+            f"--units = {args.units}: a Modelica table is always in {SI_UNIT_SET.unit_set_name}; leave "
+            "--units out"
+        )
