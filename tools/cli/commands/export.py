@@ -62,8 +62,7 @@ def add_command(command_parsers: SubParsers) -> None:
         "matrix between two nodes; with rigid sides or --interface as springs and dashpots between node "
         "pairs. contact: table of pressure over overclosure. curve: table of load over displacement, of a "
         f"bolted joint without its members. For {', '.join(ROBOT_FORMATS)}, WHAT is the parameter file of a "
-        "drive or its name "
-        "in the catalogue",
+        "drive or its name in the catalogue",
     )
     joint = export.add_mutually_exclusive_group()
     declare_argument(joint, "--params", Path, "parameter file of the joint (TOML), in place of --joint")
