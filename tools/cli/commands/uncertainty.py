@@ -14,7 +14,7 @@ from jointfmu.parameters import ParameterFile, load_default, load_parameter_file
 
 from ...common import columns
 from ...common.options import format_option_flag
-from ...common.pressure import judge_joint_stiffness
+from ...common.pressure import find_nominal_pressure_model, judge_joint_stiffness
 from ..command import (
     CommandResult,
     Parser,
@@ -214,8 +214,6 @@ def _run_uncertainty(args: argparse.Namespace) -> CommandResult:
         distributions = study.merge_settings(args.study, args.settings)
         task = problem.define_joint_study(file, distributions, args.to, points)
         A, B = propagate.draw_independent_point_sets(task, count, args.seed)
-        assert isinstance(task.run_evaluator, JointRampEvaluator)
-        judgement = judge_joint_stiffness(task.run_evaluator.parameter_file, report.select_table_loads(task))
     indices = None
     with _open_study_folder(task, count, args.seed, args.out):
         bands = propagate.compute_bands(task, A, execution)
@@ -235,6 +233,11 @@ def _run_uncertainty(args: argparse.Namespace) -> CommandResult:
         report.draw_bands_and_indices(
             args.plot, bands, indices, f"{task.ramped_input.name} [{task.ramped_input.unit}]"
         )
+    if isinstance(task.run_evaluator, JointRampEvaluator):
+        file = task.run_evaluator.parameter_file
+        nominal = find_nominal_pressure_model(KINDS[file.joint])
+        loads = report.select_table_values(task, bands, nominal.load_variable) if nominal else None
+        judgement = judge_joint_stiffness(file, loads)
     document, lines = (
         report.study_to_json(task, bands, indices),
         [report.format_study_table(task, bands, indices)],

@@ -18,13 +18,16 @@ MAX_PRINTED_LOADS = 6
 """Largest number of loads in the printed table [1]."""
 
 
-def select_table_loads(uncertainty_study: UncertaintyStudy) -> list[float]:
-    """Select the loads above zero of the ramp that the printed table shows."""
-    return [
-        float(load)
-        for load in uncertainty_study.loads[_select_table_indices(uncertainty_study.loads)]
-        if load > 0.0
-    ]
+def select_table_values(
+    uncertainty_study: UncertaintyStudy, uncertainty_bands: UncertaintyBands, variable_name: str
+) -> list[float]:
+    """Values above zero of the ramped input or of an output, at the loads of the printed table.
+
+    Outputs are those of the parameter file.
+    """
+    is_load = variable_name == uncertainty_study.ramped_input.name
+    values = uncertainty_study.loads if is_load else uncertainty_bands.nominal_outputs[variable_name]
+    return [float(value) for value in values[_select_table_indices(values)] if value > 0.0]
 
 
 def _select_table_indices(ramp_values: Any) -> Any:
@@ -132,7 +135,7 @@ def format_study_table(
         for j in load_indices:
             row = [uncertainty_bands.loads[j], uncertainty_bands.nominal_outputs[name][j]]
             row += [uncertainty_bands.quantiles[name][i, j] for i in quantile_indices.values()]
-            lines.append("".join(f"{x:16.5g}" for x in row))
+            lines.append("".join(f"{x + 0.0:16.5g}" for x in row))  # + 0.0: no -0
         lines.append("")
     if sensitivity is not None:
         lines += _format_sobol_table(uncertainty_study, sensitivity, uncertainty_bands.nonzero_outputs)
