@@ -6,7 +6,7 @@ The constants were fixed on surfaces with odd seeds. The tables have even seeds;
 from functools import cache
 
 import numpy as np
-from common import print_table_head, print_table_row
+from common import format_mean_and_deviation, print_table_head, print_table_row
 from jointfmu_tools.inputs.drawing.tables import find_table_row
 from jointfmu_tools.inputs.surfaces import bearing_curve
 from jointfmu_tools.inputs.surfaces.bearing_curve import BearingCurve, HeightSample
@@ -27,6 +27,8 @@ LIGHT_POINTS, LIGHT_LOADS, LIGHT_SCALE = 512, (0.0003, 0.001, 0.003), 4
 FITTED, PROVED = (1, 3), (0, 2)
 """Seeds of the fit, and of the proof."""
 FACTORS = (2.0, 3.0, 4.0, 5.0, 6.0)
+SAMPLES = 16
+"""Samples of random heights of a joint: a section at light load has few points, so single samples scatter."""
 LIMITS = (0.45, 0.48, 0.5, 0.55)
 """Constants tried on the odd seeds: SECTION_AREA_FACTOR, GAUSSIAN_DECAY_LENGTH_OVER_RMS_HEIGHT."""
 
@@ -110,7 +112,8 @@ def skewed_heights(Rq, skewness, seed):
 
 
 def print_joints():
-    """Print the law of heights over measured joints, with the skewness of their finish."""
+    """Print the law of heights over measured joints, with the skewness of their finish: mean and standard
+    deviation of samples of the heights."""
     pressures = [f"{p / 1e6:g} MPa" for p in MEASURED_PRESSURES]
     print_table_head("law of heights over measured stiffness", "joint", "skewness of each side", *pressures)
     for joint in joints_with_roughness():
@@ -120,10 +123,19 @@ def print_joints():
         middle = mean_measured_stiffness(joint, MEASURED_PRESSURES)
         skews = dict.fromkeys([0.0, *(numbers[f"skewness{end}"].si_value for end in ("_high", "", "_low"))])
         for skewness in skews:
-            sides = [skewed_heights(joint["Rq"], skewness, seed) for seed in (1, 2)]
-            curve = BearingCurve.from_height_sample(bearing_curve.add_independent_surfaces(*sides))
-            k = curve.normal_stiffness(MEASURED_PRESSURES, contact_modulus(body, body))
-            print_table_row(joint["id"], f"{skewness:g}", *(f"{ratio:.2f}" for ratio in k / middle))
+            k = np.array([sampled_stiffness(joint, body, skewness, sample) for sample in range(SAMPLES)])
+            print_table_row(
+                joint["id"],
+                f"{skewness:g}",
+                *(format_mean_and_deviation(one, "{:.2f}") for one in (k / middle).T),
+            )
+
+
+def sampled_stiffness(joint, body, skewness, sample):
+    """Stiffness per area [N/m3] of a measured joint by the law of heights, from one sample of its heights."""
+    sides = [skewed_heights(joint["Rq"], skewness, 2 * sample + side) for side in (1, 2)]
+    curve = BearingCurve.from_height_sample(bearing_curve.add_independent_surfaces(*sides))
+    return curve.normal_stiffness(MEASURED_PRESSURES, contact_modulus(body, body))
 
 
 def print_heights():

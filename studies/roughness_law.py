@@ -18,6 +18,8 @@ WAVES = (5e-3, 40e-3)
 """Longest waves [m] in addition to the default; the second one is the side of the joints."""
 HEIGHTS = (0.3e-6, 1e-6, 3e-6)
 """Rms heights [m] of a second roughness scale."""
+HARDNESSES, SLOPES = (1e9, 2e9, 4e9), (0.05, 0.15, 0.3)
+"""Hardnesses [Pa] and rms slopes [1] of the measured joints, which the sources do not state."""
 FITTED_PRESSURES = slice(0, 4)
 """Pressures of `cases.MEASURED_PRESSURES` to which a second scale is fitted: 0.1 to 2 MPa."""
 
@@ -89,20 +91,20 @@ def print_plastic():
 def print_joints():
     """Print the law over measured joints, and the other three laws over measured joints."""
     pressures = [f"{p / 1e6:g} MPa" for p in cases.MEASURED_PRESSURES]
-    print_table_head("law over measured stiffness", "joint", "h [µm]", "law", *pressures)
+    print_table_head("law over measured tangent of the approach", "joint", "h [µm]", "law", *pressures)
     for joint in cases.joints_with_roughness():
         law = joint_law(joint)
         middle = compare.mean_measured_stiffness(joint, cases.MEASURED_PRESSURES)
-        height = f"{law.h * 1e6:.2f}"
-        print_table_row(
-            joint["id"],
-            height,
-            "p/(0.45 h)",
-            *two_digits(cases.MEASURED_PRESSURES / (law.gamma * law.h) / middle),
-        )
-        print_table_row(
-            joint["id"], height, "roughness", *two_digits(level(law, cases.MEASURED_PRESSURES) / middle)
-        )
+        rows = {name: level(law, cases.MEASURED_PRESSURES, name) for name in ("K_loading", "K_N")}
+        rows["p/(0.45 h)"] = cases.MEASURED_PRESSURES / (law.gamma * law.h)
+        for name, k in rows.items():
+            print_table_row(joint["id"], f"{law.h * 1e6:.2f}", name, *two_digits(k / middle))
+    print_loading_stiffness(pressures)
+    print_table_head("exponent of the stiffness, 0.1 to 2 MPa", "joint", "measured", "K_loading", "K_N")
+    for joint in cases.joints_with_roughness():
+        p, law = cases.MEASURED_PRESSURES[FITTED_PRESSURES], joint_law(joint)
+        k = compare.mean_measured_stiffness(joint, p), level(law, p, "K_loading"), level(law, p)
+        print_table_row(joint["id"], *two_digits(compare.exponent(p, one) for one in k))
     zhao, hu, yu = (case.law for case in compare.cases().values())
     others = {
         f"zhao2018 {area} {spot}": replace(zhao, critical_area=area, spot_stiffness=spot)
@@ -115,6 +117,25 @@ def print_joints():
         for text, law in {**others, "hu2023": hu, "yu2022": yu}.items():
             k = stiffness_curve(law, cases.MEASURED_PRESSURES)[0]
             print_table_row(joint["id"], text, *(f"{one:.2g}" for one in k / middle))
+
+
+def print_loading_stiffness(pressures):
+    """Print K_loading over K_N for assumed hardnesses and slopes, and the dimensionless pressure of the
+    joints."""
+    print_table_head("K_loading over K_N for hardness and slope, least to largest", "joint", *pressures)
+    for joint in cases.joints_with_roughness():
+        p = cases.MEASURED_PRESSURES
+        ratios = [
+            level(joint_law(joint, H=H, slope=slope), p, "K_loading") / level(joint_law(joint), p)
+            for H in HARDNESSES
+            for slope in SLOPES
+        ]
+        ends = zip(np.min(ratios, axis=0), np.max(ratios, axis=0), strict=True)
+        print_table_row(joint["id"], *(f"{low:.2f} to {high:.2f}" for low, high in ends))
+    print_table_head("y = p longest_wave/(E* h)", "joint", *pressures)
+    for joint in cases.joints_with_roughness():
+        y = cases.normalised_pressure(joint_law(joint), cases.MEASURED_PRESSURES)
+        print_table_row(joint["id"], *(f"{one:.2g}" for one in y))
 
 
 def print_second_scale():

@@ -25,7 +25,7 @@ from common import IMAGES, format_mean_and_deviation, print_table_head, print_ta
 from jointfmu_tools.common import plots
 from oracles import interface_laws as compare
 from oracles.boundary_element import hertz, westergaard
-from oracles.measured_joints import measured
+from oracles.measured_joints import measured, measured_range
 from oracles.rough_surfaces import rms_height
 from roughness_law import CHOICES
 
@@ -106,7 +106,12 @@ def print_levels():
     h = combined_height(file.roughness)
     names = [f"{p / 1e6:g} MPa" for p in COMPARED_PRESSURES]
     print_table_head(
-        f"K over p/(0.45 h), h = {1e6 * h:.3g} um", "law", *names, "K_T/K_N", "measured rows within 2"
+        f"K over p/(0.45 h), h = {1e6 * h:.3g} um",
+        "law",
+        *names,
+        "K_T/K_N",
+        "measured joints within 2",
+        "by K_loading",
     )
     laws = {f"{a} {s}": replace(file.values, critical_area=a, spot_stiffness=s) for a, s in CHOICES}
     for name, law in {**laws, "roughness": load_default("bolted_joint", "roughness").values}.items():
@@ -116,18 +121,21 @@ def print_levels():
             name,
             *(f"{ratio:.2g}" for ratio in k / predicted_stiffness(COMPARED_PRESSURES, h)),
             f"{state['K_T'][-1] / state['K_N'][-1]:.3f}",
-            rows_within_factor_2(k),
+            joints_within_factor_2(k),
+            joints_within_factor_2(state["K_loading"] / law.A_0) if "K_loading" in state else "-",
         )
     nu = file.values.side1.nu
     print(f"\nMindlin: K_T/K_N = {2.0 * (1.0 - nu) / (2.0 - nu):.3f} without slip")
 
 
-def rows_within_factor_2(k):
-    """Number of measured joints whose stiffness is within a factor of 2 of k: text for each pressure."""
-    ends = [compare.measured_stiffness(one, COMPARED_PRESSURES) for one in measured()["normal"]]
-    middle = [np.sqrt(low * high) for low, high in ends]
-    off = [(k >= 0.5 * one) & (k <= 2.0 * one) for one in middle]
-    return "/".join(str(count) for count in np.sum(off, axis=0)) + f" of {len(off)}"
+def joints_within_factor_2(k):
+    """Share of the joints measured at each pressure whose stiffness is within a factor of 2 of k: text."""
+    joints = measured()["normal"]
+    middle = np.array([compare.mean_measured_stiffness(one, COMPARED_PRESSURES) for one in joints])
+    within = (k >= 0.5 * middle) & (k <= 2.0 * middle)
+    known = np.array([measured_range(one, COMPARED_PRESSURES) for one in joints])
+    counts = zip(np.sum(within & known, axis=0), np.sum(known, axis=0), strict=True)
+    return ", ".join(f"{count} of {total}" for count, total in counts)
 
 
 def print_joints():

@@ -11,8 +11,8 @@ from jointfmu.contact.laws.roughness import RoughnessLaw
 from jointfmu.contact.surface import ElasticConstants
 
 HARDNESS, SLOPE, FRICTION = 2e9, 0.15, 0.15
-"""Assumed hardness [Pa], rms slope [1] and friction coefficient [1]; the stiffness of small motions does not
-depend on them."""
+"""Assumed hardness [Pa], rms slope [1] and friction coefficient [1]. The stiffness of small motions does not
+depend on them, the stiffness of first loading depends on hardness and slope."""
 GAMMA = 0.45
 """Constant gamma of the law `roughness` [1]."""
 LONGEST, MACHINED = 1e-3, 0.8
@@ -44,6 +44,14 @@ def joint_law(joint, **changes):
     return replace(law, **changes)
 
 
-def level(law, p):
-    """Stiffness per area [N/m3] of a law at pressures [Pa]."""
-    return evaluate_at_pressure(law, p)["K_N"] / law.A_0
+def level(law, p, quantity="K_N"):
+    """Stiffness per area [N/m3] of a law at pressures [Pa].
+
+    quantity : K_N for small motions, K_loading for first loading
+    """
+    return evaluate_at_pressure(law, p)[quantity] / law.A_0
+
+
+def measured_range(joint, p):
+    """Mask (...) of the pressures [Pa] up to the largest one at which a joint was measured."""
+    return p <= joint["to"] * joint["pressure_unit"]

@@ -130,10 +130,15 @@ def two_scale_stiffness(law, p, h, wave):
     return 1.0 / (1.0 / level(law, p) + 1.0 / level(replace(law, h=h, longest_wave=wave), p))
 
 
+def normalised_pressure(law, p):
+    """Dimensionless pressure y [1] of the law at pressures p [Pa]."""
+    return p * law.longest_wave / (contact_modulus(law.side1, law.side2) * law.h)
+
+
 def stiffness_with_tail(law, p):
     """Stiffness per area [N/m3] of the law with the tail of the height distribution that many hills have.
 
     1/gamma is replaced by 1/gamma (y/0.2)^-0.08, as in boundary elements of up to 1024 hills, y = 0.001 to 1.
     """
-    y = p * law.longest_wave / (contact_modulus(law.side1, law.side2) * law.h)
+    y = normalised_pressure(law, p)
     return level(law, p) + p / (law.gamma * law.h) * ((y / 0.2) ** -0.08 - 1.0)

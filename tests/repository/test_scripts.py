@@ -33,7 +33,8 @@ def test_interface_laws_are_compared_with_brentq():
     """The benchmark runs and checks that its own inversion and brentq find the same spots."""
     lines = run("benchmarks/interface_laws.py", "--quick").splitlines()
     assert [line.split()[0] for line in lines[2:]] == ["zhao2018", "hu2023", "yu2022", "roughness", "table"]
-    assert all(float(line.split()[-1]) > 0.0 for line in lines[2:])
+    rates = [line.split()[1:4] for line in lines[2:]]  # the ratio after them rounds to 0 on a busy machine
+    assert all(float(rate) > 0.0 for row in rates for rate in row)
 
 
 @pytest.mark.slow

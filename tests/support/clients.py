@@ -334,7 +334,7 @@ CLIENTS = {
     ),
     "Linux on x86_64": Client(
         check_linux_x86_64,
-        "times of native FMUs; other platforms compared with Linux on x86_64",
+        "times of native FMUs; results on other platforms, compared with those on Linux on x86_64",
         "Linux on x86_64",
     ),
     "Linux or macOS": Client(
