@@ -196,6 +196,8 @@ def _define_fmu_study(args: argparse.Namespace, fmu: Path) -> "UncertaintyStudy"
 
 def _run_uncertainty(args: argparse.Namespace) -> CommandResult:
     """Run `jointfmu uncertainty`: propagate uncertain parameters through a joint or an FMU."""
+    import numpy as np
+
     from ...studies.uncertainty import journal, problem, propagate, report, study
     from ...studies.uncertainty.sweep import format_quantiles_csv
     from ...studies.uncertainty.worker import JointRampEvaluator
@@ -236,7 +238,10 @@ def _run_uncertainty(args: argparse.Namespace) -> CommandResult:
     if isinstance(task.run_evaluator, JointRampEvaluator):
         file = task.run_evaluator.parameter_file
         nominal = find_nominal_pressure_model(KINDS[file.joint])
-        loads = report.select_table_values(task, bands, nominal.load_variable) if nominal else None
+        loads = report.select_table_loads(task)
+        if nominal and nominal.load_variable != task.ramped_input.name:  # gear mesh: force over the angle
+            output = bands.nominal_outputs[nominal.load_variable]
+            loads = np.interp(loads, task.loads, output).tolist()
         judgement = judge_joint_stiffness(file, loads)
     document, lines = (
         report.study_to_json(task, bands, indices),

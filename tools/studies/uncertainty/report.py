@@ -18,16 +18,13 @@ MAX_PRINTED_LOADS = 6
 """Largest number of loads in the printed table [1]."""
 
 
-def select_table_values(
-    uncertainty_study: UncertaintyStudy, uncertainty_bands: UncertaintyBands, variable_name: str
-) -> list[float]:
-    """Values above zero of the ramped input or of an output, at the loads of the printed table.
-
-    Outputs are those of the parameter file.
-    """
-    is_load = variable_name == uncertainty_study.ramped_input.name
-    values = uncertainty_study.loads if is_load else uncertainty_bands.nominal_outputs[variable_name]
-    return [float(value) for value in values[_select_table_indices(values)] if value > 0.0]
+def select_table_loads(uncertainty_study: UncertaintyStudy) -> list[float]:
+    """Select the loads above zero of the ramp that the printed table shows."""
+    return [
+        float(load)
+        for load in uncertainty_study.loads[_select_table_indices(uncertainty_study.loads)]
+        if load > 0.0
+    ]
 
 
 def _select_table_indices(ramp_values: Any) -> Any:
