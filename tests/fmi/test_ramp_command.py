@@ -44,3 +44,11 @@ def test_a_ramp_is_drawn(words, capsys, tmp_path):
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
     assert capsys.readouterr().out.count("wrote ") == 2
     assert "'.pdf' is not that of a picture" in refused_line(capsys, *words, "--plot", "a.pdf")
+
+
+@pytest.mark.parametrize(("end", "is_doubtful"), [("2.5", True), ("2500", False)])
+def test_a_load_in_the_wrong_unit_is_doubted(words, capsys, end, is_doubtful):
+    """The nominal value of the force is 1 kN: 2.5 N is the value of a user who means 2.5 kN."""
+    place = words.index("--to") + 1
+    assert cli.main([*words[:place], end, *words[place + 1 :]]) == 0
+    assert ("usual size of f, 1000 N; values are in N" in capsys.readouterr().err) == is_doubtful

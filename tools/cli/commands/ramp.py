@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 RAMP_OPTIONS, LOOP_OPTIONS = ("to", "step"), ("about", "shape", "points", "cycles", "output")
 """Options of a ramp, and options of load cycles in addition to --loop."""
+MIN_RAMP_END_OVER_NOMINAL = 0.01
+"""End of a ramp over the nominal value of its input [1] below which the command warns: kN in place of N."""
 MAX_PRINTED_RAMP_POINTS = 24
 """Largest number of points of a ramp that are printed on a terminal [1]."""
 
@@ -107,10 +109,25 @@ def _print_messages(fmu_messages: Iterable[str], driven_input: str) -> None:
             print(message, file=sys.stderr)
 
 
+def _warn_small_ramp(fmu_path: Path, input_name: str, end_value: float) -> None:
+    """Warn if a ramp ends far below the usual size of its input: the nominal value of the FMU, if above 1."""
+    from ...run.host import read_description
+
+    (variable,) = (v for v in read_description(fmu_path).modelVariables if v.name == input_name)
+    nominal, unit = float(variable.nominal or 1.0), variable.unit or "1"
+    if nominal > 1.0 and abs(end_value) < MIN_RAMP_END_OVER_NOMINAL * nominal:
+        print(
+            f"warning: to = {end_value:g} {unit} is below {100.0 * MIN_RAMP_END_OVER_NOMINAL:g} % of the "
+            f"usual size of {input_name}, {nominal:g} {unit}; values are in {unit}: check the unit",
+            file=sys.stderr,
+        )
+
+
 def _run_ramp(args: argparse.Namespace) -> CommandResult:
     """Run an FMU along a load ramp, and print or write its outputs."""
     result = ramp.run_ramp(args.fmu, args.input, args.to, args.step, dict(args.settings))
     _print_messages(result.log_messages, args.input)
+    _warn_small_ramp(args.fmu, args.input, args.to)
     result = _select_columns(result, args.input, args.columns)
     if args.csv:
         write_text(args.csv, result.format_time_series_csv())
@@ -267,3 +284,5 @@ def _draw_loops(
     right.set_ylim(0.0, 1.1 * size * float(np.max(stiffness)))
     if np.all(loss > 0.0):
         middle.set(xscale="log", yscale="log")
+        plots.set_log_axis_ticks(middle.xaxis)
+        plots.set_log_axis_ticks(middle.yaxis)
