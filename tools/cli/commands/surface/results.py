@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from jointfmu.contact.laws import ROUGHNESS_LAW_NAME, TABLE_LAW_NAME
 from jointfmu.contact.roughness import PERSSON_GAMMA, combined_height, predicted_stiffness
 from jointfmu.joints import KINDS
-from jointfmu.parameters import ParameterFile
+from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.quantity import Number
 
 from ....common.judgement import Plausibility
@@ -215,6 +215,12 @@ def collect_surface_warnings(
             f"the heights are not Gaussian: the stiffness is about {ratio:.2g} times that of the law "
             f"{ROUGHNESS_LAW_NAME}; --table FILE writes it for jointfmu new --interface-table"
         )
+    if args.out and args.joint and not args.params:
+        lines.append(
+            f"everything but the surface is of the shipped joint {load_default(args.joint).name!r}: sizes, "
+            "material, friction; for your joint, make a file with jointfmu new "
+            f"{args.joint.replace('_', '-')}, and state it by --params"
+        )
     if not parameter_file or not args.out or parameter_file.law == TABLE_LAW_NAME:
         return lines
     why = undetermined_reason(identified_surface, parameter_file.joint)
@@ -260,6 +266,8 @@ def build_surface_result(
         lines += _format_boundary_element_table(stiffness_points)
     if len(surface_heights) == 2:
         lines.append("equivalent surface of the pair: structure functions and spectra added")
+    elif identified_surface.contact_side == "both":
+        lines.append("D and G of both sides together: structure function and spectrum of the scan doubled")
     lines += [f"repaired in {name}: {repair}" for name, repair in identified_surface.scan_repairs]
     heads = ("method", "direction", "range [m]", "D, profile", "G, profile [m]", "D_s, surface", "G_s [m]")
     lines += align_columns(
