@@ -16,6 +16,7 @@ law with the rms height h as a parameter computes h from them. For a law without
 import textwrap
 import tomllib
 from collections.abc import Collection, Iterable, Mapping
+from contextlib import suppress
 from dataclasses import Field, dataclass, field, replace
 from pathlib import Path
 from typing import Any, TypeVar
@@ -33,6 +34,7 @@ from .quantity import (
     quantity_field,
     replace_values,
 )
+from .quantity.units import conversion_factor
 
 EntryValue = TypeVar("EntryValue")
 
@@ -325,6 +327,15 @@ def read_document(document_path: Path, expected_content: str) -> dict[str, Any]:
     return document
 
 
+def _format_converted_value(toml_entry: Mapping[str, Any], si_unit: Any) -> str:
+    """Text with the value of an entry in its SI unit; empty if the entry has no unit of this quantity."""
+    value, stated_unit = toml_entry.get("value"), toml_entry.get("unit")
+    if isinstance(value, int | float) and isinstance(stated_unit, str) and isinstance(si_unit, str):
+        with suppress(ValueError):
+            return f"; write value = {value * conversion_factor(stated_unit, si_unit):.9g}"
+    return ""
+
+
 def read_entries(
     parameter_path: Path,
     declared_fields: Mapping[str, Field[Any]],
@@ -356,7 +367,10 @@ def read_entries(
         if name in declared_fields:
             unit = declared_fields[name].metadata.get("unit")
             if entry.get("unit") != unit:
-                raise ValueError(f"{parameter_path}: {name}: unit {entry.get('unit')!r}, expected {unit!r}")
+                raise ValueError(
+                    f"{parameter_path}: {name}: unit {entry.get('unit')!r}, expected {unit!r}"
+                    f"{_format_converted_value(entry, unit)}"
+                )
         if entry.get("kind") not in (*VALUE_ORIGINS, *VALUE_ORIGIN_BY_FORMER_NAME):
             raise ValueError(
                 f"{parameter_path}: {name}: kind = {entry.get('kind')!r}, allowed are "

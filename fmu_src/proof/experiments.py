@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cache
 from importlib.resources import files
 from itertools import count, islice
@@ -19,6 +19,7 @@ from jointfmu.quantity import replace_values
 from .boundary_values import find_boundary_values
 from .reference import Stimulus, compute_reference_results, list_start_values, round_to_significant_digits
 from .series import TimeSeries
+from .standard import MIN_TOLERANCE_SCALE_OVER_NOMINAL
 
 RAMP_INPUT_LEVEL_COUNT = 20
 """Number of levels of the driven input on the load ramp [1]."""
@@ -47,6 +48,7 @@ class ReferenceExperiment:
     experiment_purpose : one of `standard.EXPERIMENT_PURPOSES`
     variable_values    : {variable: value} that differ from the start values of the FMU
     input_stimulus     : levels of the driven input
+    output_scales      : {output: size to which its tolerance is relative, instead of each reference value}
     """
 
     experiment_purpose: str
@@ -55,6 +57,7 @@ class ReferenceExperiment:
     variable_values: Mapping[str, object]
     input_stimulus: Stimulus
     reference_results: TimeSeries
+    output_scales: Mapping[str, float] = field(default_factory=dict)
 
 
 def compute_reference_experiments(
@@ -233,7 +236,15 @@ def _compute_hysteresis_loops(
     doc = f"{loop.input_name} to and fro by {loop.input_amplitude:g}, from rest"
     with suppress(*_PARAMETER_REFUSAL_ERRORS):
         outputs = _compute_experiment_outputs(fmu_model, parameter_file, loop.variable_values, drive)
-        yield ReferenceExperiment("validation", "loop", doc, loop.variable_values, drive, outputs)
+        scales = (
+            loop.find_output_scales(parameter_file.values, outputs.columns) if loop.find_output_scales else {}
+        )
+        nominal = {output.name: output.nominal for output in fmu_model.outputs}
+        scales = {
+            name: max(scale, MIN_TOLERANCE_SCALE_OVER_NOMINAL * nominal[name])
+            for name, scale in scales.items()
+        }
+        yield ReferenceExperiment("validation", "loop", doc, loop.variable_values, drive, outputs, scales)
 
 
 def _compute_boundary_experiments(

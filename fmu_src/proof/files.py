@@ -201,7 +201,20 @@ def _declare_experiment(
     )
     for tag, path in files.items():
         SubElement(node, tag, source=path)
+    if experiment.output_scales:
+        annotate_output_scales(node, experiment.output_scales)
     return {path: content for path, content in contents.items() if path not in stored_files}
+
+
+def annotate_output_scales(experiment_element: Element, output_scales: Mapping[str, float]) -> None:
+    """Add the annotation of an experiment that states the scales {output: size} of its tolerances."""
+    annotation = SubElement(
+        SubElement(experiment_element, "Annotations"),
+        "Annotation",
+        type=standard.OUTPUT_SCALES_ANNOTATION_TYPE,
+    )
+    for output, scale in output_scales.items():
+        SubElement(annotation, "Scale", name=output, value=f"{scale:.{RESULT_SIGNIFICANT_DIGITS}g}")
 
 
 def _format_parameter_set(
@@ -254,6 +267,7 @@ def _format_experiment_text(
         tolerance=REFERENCE_TOLERANCE,
         solver=SOLVER_TOLERANCE_OVER_EXPERIMENT_TOLERANCE * REFERENCE_TOLERANCE,
         floor=MIN_TOLERANCE_SCALE_OVER_NOMINAL,
+        scales=standard.OUTPUT_SCALES_ANNOTATION_TYPE,
         page="documentation/index.html" if is_native else "modelDescription.xml",
         file=parameter_file_stem,
     )

@@ -499,7 +499,7 @@ def test_json_prints_one_object_and_a_warning_goes_to_standard_error(
     found = json.loads(out)
     assert found["columns"]["f"] == [0.0, -10.0, -20.0]
     assert found["units"]["K_N"] == "N/m"
-    assert err.startswith("f = -10 N is outside [0, inf) N: the force is tensile")
+    assert err.startswith("warning: f = -10 N is outside [0, inf) N: the force is tensile")
     assert err.count("\n") == 1
 
 

@@ -498,6 +498,20 @@ BAD = {
         ["GearContact", "'bolted_joint'", "'gear_contact'"],
     ),
     "build-out": (["build", "GearContact", "--out", "{tmp}/text.toml"], ["text.toml", "cannot be written"]),
+    "number-unit": (
+        ["modes", "a.toml", "--preload", "30kN"],
+        ["--preload = '30kN'", "a number in N", "write 30000"],
+    ),
+    "unit-psi": (
+        ["modes", "a.toml", "--preload", "1kPa"],
+        ["--preload = '1kPa'", "a number in N, without its unit"],
+    ),
+    "percent": (
+        ["footprint", "import", "a.csv", "--preload", "1", "--force-tolerance", "5%"],
+        ["write 0.05"],
+    ),
+    "comma": (["modes", "a.toml", "--preload", "30,5e3"], ["--preload = '30,5e3' has a comma", "30.5e3"]),
+    "whole": (["modes", "a.toml", "--count", "3.5"], ["--count = '3.5' is not a whole number"]),
     "ramp-nothing": (["ramp"], ["FMU", "--input"]),
     "ramp-file": (["ramp", "{tmp}/none.fmu", *RAMP[2:]], ["none.fmu", "no such file"]),
     "ramp-text": (["ramp", "{tmp}/text.fmu", *RAMP[2:]], ["text.fmu", "is not an FMU"]),

@@ -131,7 +131,7 @@ E = [
     (("modelica", "springs", "--preload", 9e3), "modelica springs cannot be written; modelica has curve"),
     (
         ("calculix", "springs"),
-        "springs need --preload, the preload of each bolt [N], or --nodes with a column pressure",
+        "springs need --preload, the force of each bolt at tightening [N], or --nodes with a column pressure",
     ),
     (("calculix", "springs", "--preload", -1), "preload = -1 N per bolt with moment = 0 N.m is outside"),
     (("calculix", "springs", "--preload", "nan"), "preload = nan N per bolt"),

@@ -131,7 +131,7 @@ def _written(path, field):
     ("10,20,10,-1", r"line 5: pressure = -1e\+06 Pa is outside \[0, inf\)"),
     ("10,20,0,1", r"line 5: area = 0 m2 is outside \(0, inf\)"),
     ("10,0,10,1", r"line 5: is at the same place as line 4"),
-    ("10,20,10,0", r"line 5: has no pressure, as 1 of 4 nodes .*; state keep \(they just touch\)"),
+    ("10,20,10,0", r"line 5: has no pressure; 1 of the 4 nodes .* State keep \(at these nodes the sides"),
     ("10,20,10", r"line 5 has 3 columns, expected 4"),
 ])  # fmt: skip
 def test_csv_is_refused_with_the_line(tmp_path, row, message):
@@ -183,7 +183,7 @@ def test_nodes_that_calculix_leaves_out_are_open(tmp_path):
     path = DATA / "blocks_open.frd"
     listed = path.read_text().split(" -4  CONTACT")[1].split(" -3")[0].count("\n -1")
     assert listed < 35
-    with pytest.raises(ValueError, match=r"node \d+: has no pressure, as 17 of 35 nodes"):
+    with pytest.raises(ValueError, match=r"node \d+: has no pressure; 17 of the 35 nodes"):
         FieldReader(**UNITS).read_field(path)
     kept, _ = FieldReader(**UNITS, open_node_treatment="keep").read_field(path)
     assert kept.nodal_area.size == 35

@@ -218,7 +218,11 @@ REFUSED = {
         ["'inputs.preloads'", "inputs.preload, inputs.moment"],
     ),
     "output": ("preload = {", "K_zz = {", ["'inputs.K_zz'", "inputs.preload"]),
-    "input-unit": (PRELOAD, PRELOAD.replace('"N"', '"kN"'), ["inputs.preload", "unit 'kN'", "expected 'N'"]),
+    "input-unit": (
+        PRELOAD,
+        PRELOAD.replace('"N"', '"kN"'),
+        ["inputs.preload", "unit 'kN'", "expected 'N'; write value = "],
+    ),
     "input-low": (
         PRELOAD,
         PRELOAD.replace("0.0", "-1.0"),

@@ -104,11 +104,15 @@ def test_the_command_prints_a_table_and_writes_what_fit_reads(native, tmp_path, 
     fmu, path, picture = native / "fmi3" / "HarmonicDriveSpring.fmu", tmp_path / "l.csv", tmp_path / "l.png"
     words = ["ramp", fmu, "--input", "phi2", "--loop", *AMPLITUDES, "--set", *SET, "--csv", path]
     assert cli.main([*map(str, words), "--plot", str(picture)]) == 0
-    head, *rows = capsys.readouterr().out.splitlines()
+    printed = capsys.readouterr()
+    head, *rows = printed.out.splitlines()
+    assert printed.err == "angle = phi2, torque = -tau2\n"
     assert head.startswith("angle [rad],torque [N.m],secant_stiffness [N.m/rad],loss [J],loss_factor [1]")
     assert len(rows) == len(AMPLITUDES) + 2
     assert picture.read_bytes().startswith(b"\x89PNG")
-    assert path.read_text().startswith("# angle = phi2, torque = -tau2\nrun [1],angle [rad],torque [N.m],")
+    table = np.genfromtxt(path, delimiter=",", names=True, deletechars="")
+    assert table.dtype.names[:3] == ("run_[1]", "angle_[rad]", "torque_[N.m]")
+    assert set(table["run_[1]"]) == {1.0 + i for i in range(len(AMPLITUDES))}
     found = hysteresis.fit(path).solution.values
     assert found == pytest.approx(HYSTERESIS, rel=1e-6)
 

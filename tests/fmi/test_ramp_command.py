@@ -46,6 +46,32 @@ def test_a_ramp_is_drawn(words, capsys, tmp_path):
     assert "'.pdf' is not that of a picture" in refused_line(capsys, *words, "--plot", "a.pdf")
 
 
+def test_a_ramp_starts_at_the_value_set_for_its_input(native, capsys):
+    fmu = str(native / "fmi3" / "BoltedJoint.fmu")
+    words = [
+        "ramp",
+        fmu,
+        "--input",
+        "temperature",
+        "--json",
+        "--to",
+        "320",
+        "--step",
+        "10",
+        "--set",
+        "preload=9e3",
+    ]
+    assert cli.main([*words, "temperature=293.15"]) == 0
+    printed = capsys.readouterr()
+    assert json.loads(printed.out)["columns"]["temperature"] == [293.15, 303.15, 313.15, 320.0]
+    assert printed.err == ""
+    assert cli.main(words) == 0
+    printed = capsys.readouterr()
+    assert json.loads(printed.out)["columns"]["temperature"][0] == 0.0
+    assert printed.err.startswith("warning: temperature = 0 K in place of its start value = 293.15 K")
+    assert "steps must lead from 350 to 320" in refused_line(capsys, *words, "temperature=350")
+
+
 @pytest.mark.parametrize(("end", "is_doubtful"), [("2.5", True), ("2500", False)])
 def test_a_load_in_the_wrong_unit_is_doubted(words, capsys, end, is_doubtful):
     """The nominal value of the force is 1 kN: 2.5 N is the value of a user who means 2.5 kN."""

@@ -241,7 +241,7 @@ def test_a_law_is_judged_as_by_the_command(capsys):
         (lambda: jointfmu.fit("catalogue", "a.csv"), "takes no file"),
         (
             lambda: jointfmu.fit("loop", "a.csv", joint="bolted_joint", preload="9 kN"),
-            r"preload = '9 kN' is not a number: preload of each bolt in the test of a bolted joint",
+            r"preload = '9 kN' is not a number: force of each bolt of a bolted joint at tightening \[N\]",
         ),
         (lambda: jointfmu.fit("catalogue", **ROW, law="hu2023", free="name"), "'name' is not a parameter to"),
         (lambda: jointfmu.fit("preload", "a.csv", direction="up"), "direction = 'up', allowed are normal"),

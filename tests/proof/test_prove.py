@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 import zipfile
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -17,18 +18,21 @@ from clients import needs
 from conftest import here_alone, refused_line
 from fmpy.cross_check import validate_result
 from fmpy.util import read_csv, read_ref_opt_file
+from jointfmu_fmu_src.building import build_fmus
 from jointfmu_fmu_src.native.build import build_native_fmu as native_build
 from jointfmu_fmu_src.proof.files import REFERENCE_TOLERANCE
 from jointfmu_fmu_src.proof.members import make_proof_files
+from jointfmu_fmu_src.proof.series import parse_time_series_csv
 from jointfmu_fmu_src.proof.standard import REFERENCE_FILE_FOLDER
 from jointfmu_tools import cli
 from jointfmu_tools.run.proof.importers import SUPPORTED_FMI_VERSIONS as KNOWN
+from jointfmu_tools.run.proof.report import MAX_PRINTED_FAILURES
 from natives import VERSIONS
 from proofs import BOTH, ECOS, MEASURED, copy, other_manifest, proved, replaced
 from surroundings import Enter, environment, missing_package
 
 from jointfmu.joints import KINDS, MODELS
-from jointfmu.parameters import load_default
+from jointfmu.parameters import load_default, load_parameter_file
 
 pytestmark = pytest.mark.slow
 
@@ -120,6 +124,26 @@ def test_a_changed_parameter_of_the_python_flavour_fails_by_name(
     found = proved(capsys, copy(fmus / f"{NAME}.fmu", tmp_path / "changed.fmu", change), status=1)
     assert found["misses"][0] == "e starts at 0.3, modelDescription.xml says 0.2"
     assert any(line.startswith("load ramp, co-simulation: ") for line in found["misses"])
+
+
+@needs("gmsh")
+def test_an_elastic_joint_in_gross_slip_passes_its_proof(
+    elastic_joint: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """With a friction coefficient of 0.05, the loop slips so far that K_xx is round-off of its value at rest.
+
+    C_loop, which contains the square root of K_xx, then differs from the package by more than 1e-5 of itself.
+    """
+    file = load_parameter_file(elastic_joint / "joint.toml")
+    with here_alone("2"):
+        build_fmus(["BoltedJoint"], ["fmi2"], replace(file, values=replace(file.values, mu=0.05)), tmp_path)
+    (path,) = tmp_path.rglob("BoltedJoint.fmu")
+    found = proved(capsys, path)
+    assert not found["misses"]
+    with zipfile.ZipFile(path) as archive:
+        text = archive.read(f"{REFERENCE_FILE_FOLDER}/experiments/02_loop_ref.csv").decode()
+    stiffness = parse_time_series_csv(text, "loop").columns["K_xx"]
+    assert stiffness.min() < 1e-14 * stiffness.max()
 
 
 def test_the_library_of_another_joint_fails_in_one_line(
@@ -273,6 +297,9 @@ def test_what_cannot_be_proved_is_refused_in_one_line(
     enter(missing_package("ecospy"))
     line = refused_line(capsys, "prove", native / "fmi2" / f"{NAME}.fmu", "--in", "ecos")
     assert "the package ecospy is missing" in line
+    enter(missing_package("libcosimpy"))  # its version of FMI is refused even if it is not installed
+    line = refused_line(capsys, "prove", native / "fmi3" / f"{NAME}.fmu", "--in", "libcosim")
+    assert "is of FMI 3.0, but libcosim takes only 2.0" in line
 
 
 def test_an_importer_whose_library_does_not_load_is_refused(
@@ -342,6 +369,10 @@ def test_a_changed_parameter_is_seen_though_references_were_changed_along(
     found = proved(capsys, path, "--against", str(own), status=1)
     assert found["misses"][0] == f"e starts at 0.3, {own} says 0.2"
     assert any(line.startswith("load ramp, co-simulation: ") for line in found["misses"])
+    assert cli.main(["prove", str(path), "--against", str(own)]) == 1
+    printed = [line for line in capsys.readouterr().out.splitlines() if line.startswith("missed: ")]
+    assert len(found["misses"]) > len(printed) == MAX_PRINTED_FAILURES + 1
+    assert printed[0] == f"missed: {found['misses'][0]}"
 
 
 def test_an_fmu_is_not_compared_with_the_file_of_another_joint(

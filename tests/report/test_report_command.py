@@ -13,7 +13,7 @@ from jointfmu_fmu_src.native.page import find_load_ramp_panels, make_documentati
 from jointfmu_fmu_src.proof.experiments import compute_reference_experiments
 from jointfmu_tools import cli
 from jointfmu_tools.common.pressure import judge_joint_stiffness
-from jointfmu_tools.pages.report.joint import VALIDITY_HEADINGS, write_joint_report
+from jointfmu_tools.pages.report.joint import VALIDITY_HEADINGS, _describe_stiffness, write_joint_report
 from jointfmu_tools.pages.report.load_history import LoadHistory
 from surroundings import Enter
 
@@ -179,6 +179,15 @@ def test_the_ramp_reaches_where_the_joint_is_loaded(
     assert ramp.input_stimulus.input_levels[-1] == pytest.approx(course.model.ramp.end_value, rel=1e-8)
     assert ramp.reference_results.columns[stiffness][-1] == pytest.approx(columns[stiffness][-1], rel=1e-6)
     assert np.all(ramp.reference_results.columns[stiffness][1:] > 0.0)
+
+
+def test_a_stiffness_that_settles_is_said_to() -> None:
+    """The last line of a catalogue begins at T2, after a rounded corner; the ramp ends beyond."""
+    model = MODELS["HarmonicDriveCompliance"].with_parameters(CATALOGUE.joint, CATALOGUE.values)
+    text = _describe_stiffness(LoadHistory(model, CATALOGUE))
+    load = float(re.search(r"at tau = ([\d.]+) N m, by", text)[1])
+    assert 1.0 < load / CATALOGUE.values_by_name["T2"] < 1.2
+    assert "less than 1 %" in text
 
 
 def test_what_is_said_of_the_end_of_the_law_is_so_there() -> None:

@@ -326,7 +326,7 @@ def test_the_reference_has_every_public_name(site: Path) -> None:
         assert name.lower() in ids, name
     assert re.search(
         r"<li><code>efficiency</code>: efficiency at rated torque and 2000 rev/min \[1\], "
-        r"as in 0\.7 or 70%</li>",
+        r"as in 0\.7 or 70% \(default: [^<]+\)</li>",
         text,
     )
     assert '"reference.html#drivejointwind_up"' in (site / "search.json").read_text("utf-8")

@@ -24,6 +24,7 @@ from oracles import system_records
 from surroundings import environment
 
 from jointfmu.files.outputs import write_parameter_text
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.parameters import load_default
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -99,6 +100,11 @@ def folder(tmp_path_factory, native):
     speeds = (s * w for s in (-1.0, 1.0) for w in (0.1, 0.5, 1.0, 2.0))
     rows = "".join(f"{w},{math.copysign(0.5, w) + 0.3 * w}\n" for w in speeds)
     (place / "robot.csv").write_text(f"dq [rad/s],i [A]\n{rows}")
+    spring, still = BoltedJointSpring.from_joint(joint), (0.0, 0.0, 0.0)
+    rows = "".join(f"{F},{spring.evaluate(F, 0.0, still, still)['K_zz']}\n" for F in (3e3, 9e3, 15e3))
+    (place / "stiffness.csv").write_text(f"preload [N],stiffness [N/m]\n{rows}")
+    words = ["ramp", str(place / "dist/fmi3/HarmonicDriveSpring.fmu"), "--input", "phi2", "--loop", "1e-3"]
+    assert cli.main([*words, "--csv", str(place / "loop.csv")]) == 0
     system_records.make_chirp_record(place, 1)
     return place
 

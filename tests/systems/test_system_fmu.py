@@ -110,6 +110,14 @@ def test_any_step_passes_the_proof_in_each_importer(files_of, name, importer, ve
     assert found.executed_experiment_count == (3 if importer == "fmpy" else 2)
 
 
+def test_a_tolerance_that_is_too_loose_is_tightened(tmp_path):
+    """The local errors of a step add up, to more in one system than in another: the FMU meets its references
+    at long steps too, by a tolerance that the build finds."""
+    system = replace(assemble_system(load_system("robot_joint")), step_tolerance=3e-3)
+    (path,) = build_system_fmus(system, tmp_path, "3", (fmpy.platform_tuple,))
+    assert prove(path).failure_messages == []
+
+
 @pytest.mark.parametrize("name", ["robot_joint", "bolted_column", "six_axis_robot"])
 def test_references_of_the_proof_are_those_of_model_exchange(files_of, name):
     """The references of the FMU are those of model exchange in fmpy; for FMI 2.0, those of fmpy's own master

@@ -26,18 +26,18 @@ class DriveJoint(Joint):
     """
 
     def wind_up(self, torque: ArrayLike) -> Array:
-        """Wind-up (n) [rad] of the output under torques (n) [N.m]; odd in the torque."""
+        """Wind-up (n) [rad] of the output under torques (n) [N.m], on the midline; odd in the torque."""
         self._warn_beyond_table("torque", torque, self._midline_curve.load[-1], "N.m")
         return self._midline_curve.odd_inverse(torque)[()]
 
     def torque(self, wind_up: ArrayLike) -> Array:
-        """Torque (n) [N.m] at wind-ups (n) [rad]; odd in the wind-up."""
+        """Torque (n) [N.m] on the midline at wind-ups (n) [rad]; odd in the wind-up."""
         phi = np.asarray(wind_up, dtype=np.float64)
         self._warn_beyond_table("wind-up", phi, self._midline_curve.displacement[-1], "rad")
         return np.asarray(np.copysign(self._midline_curve.derivatives(np.abs(phi), 1)[0], phi))[()]
 
     def stiffness(self, torque: ArrayLike) -> Array:
-        """Tangent stiffness K_WTS (n) [N.m/rad] under torques (n) [N.m]."""
+        """Tangent stiffness K_WTS (n) [N.m/rad] of the midline under torques (n) [N.m]."""
         return np.asarray(self._midline_curve.derivatives(np.abs(self.wind_up(torque)), 1)[1])[()]
 
     def _warn_beyond_table(

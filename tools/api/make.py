@@ -15,13 +15,14 @@ from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.parameters import load_parameter_file as load_file
 
 from ..common import plots
+from ..common.names import find_similar_names
 from ..common.options import Option
 from ..inputs.drawing.faces import warn_unknown_height_distribution
 from ..inputs.drawing.part import NewJoint, NewJointCommand
 from ..inputs.drawing.reading import parse_number
 from ..inputs.fitting.outcome import FitResult, draw_fit_plots, fit_figure_size, format_relative_deviation
 from ..inputs.fitting.procedure import find_fit_procedures
-from ..joints.harmonic_drive.catalogue import list_drives
+from ..joints.harmonic_drive.catalogue import find_drive, list_drives
 from ..joints.harmonic_drive.new import NEW_JOINT_COMMAND as NEW_DRIVE
 from .drive_joint import DriveJoint
 from .frame import Table, TableDisplay
@@ -81,13 +82,16 @@ def load(source: str | Path) -> Joint:
         )
     if Path(source).suffix == ".toml" or Path(source).is_file():
         return create_joint(load_file(source))
-    if any(item.joint_name.lower() == name.lower() for item in list_drives()):
-        with _rename_options_in_errors():
-            return make_joint_from_drawing(NEW_DRIVE, {"catalogue": name})
-    raise ValueError(
-        f"{name!r} is not a parameter file (.toml) or a known name; allowed are "
-        f"{', '.join((*MODELS, *KINDS))} and names of the catalogue (jointfmu catalogue)"
-    )
+    try:
+        drive_name = find_drive(name).joint_name
+    except ValueError:
+        similar = find_similar_names(name, (*MODELS, *KINDS, *(item.joint_name for item in list_drives())))
+        known = f"allowed are {', '.join((*MODELS, *KINDS))} and names of the catalogue (jointfmu catalogue)"
+        if similar:
+            known = f"nearest are {', '.join(similar)} (jointfmu catalogue lists all drives)"
+        raise ValueError(f"{name!r} is not a parameter file (.toml) or a known name; {known}") from None
+    with _rename_options_in_errors():
+        return make_joint_from_drawing(NEW_DRIVE, {"catalogue": drive_name})
 
 
 def make_joint_from_drawing(joint_command: NewJointCommand, option_values: Mapping[str, object]) -> Joint:

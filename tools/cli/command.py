@@ -5,15 +5,18 @@ import json
 import re
 import sys
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn, TypeAlias
 
 from jointfmu.files.outputs import FileKind
+from jointfmu.quantity.units import conversion_factor, unit_size
 
 from ..common.judgement import Plausibility
 from ..common.names import find_similar_names
 from ..common.options import format_option_flag
+from ..inputs.drawing.reading import NUMBER_WITH_UNIT_PATTERN, check_no_comma
 from .examples import EXAMPLE_PREREQUISITES, EXAMPLES
 
 
@@ -95,12 +98,43 @@ class Parser(argparse.ArgumentParser):
         before = f", {EXAMPLE_PREREQUISITES[name]}" if name in EXAMPLE_PREREQUISITES else ""
         return f"{super().format_help()}\nexample{before}:\n  jointfmu {example}\n"
 
+    def _describe_number(self, option_name: str, number_text: str) -> str:
+        """Describe what is wrong with the number of an option: comma, or a unit; and what to write."""
+        try:
+            check_no_comma(option_name.lstrip("-"), number_text)
+        except ValueError as error:
+            return str(error)
+        help_texts = [action.help or "" for action in self._actions if option_name in action.option_strings]
+        unit = next((match[1] for match in map(_HELP_UNIT_PATTERN.search, help_texts) if match), None)
+        expected = "a number" if unit in (None, "1") else f"a number in {unit}"
+        text = f"{option_name} = {number_text!r} is not a number; expected {expected}, without its unit"
+        if written := NUMBER_WITH_UNIT_PATTERN.fullmatch(number_text.strip()):
+            with suppress(ValueError):
+                if written[2] == "%" and expected == "a number":
+                    size = 0.01
+                else:
+                    size = conversion_factor(written[2], unit) if unit else unit_size(written[2])
+                return f"{text}: write {float(written[1]) * size:.12g}"
+        return text
+
     def error(self, message: str) -> NoReturn:
         """Print the error on one line, with a suggestion for an invalid choice, and exit with status 2."""
         if match := _INVALID_CHOICE_PATTERN.search(message):
             message += suggest_word(match[1], re.findall(r"[\w.-]+", match[2]))
+        elif match := _INVALID_NUMBER_PATTERN.fullmatch(message):
+            message = (
+                self._describe_number(match[1], match[3])
+                if match[2] == "float"
+                else f"{match[1]} = {match[3]!r} is not a whole number"
+            )
         print(f"{self.prog}: {message}", file=sys.stderr)
         raise SystemExit(2)
+
+
+_INVALID_NUMBER_PATTERN = re.compile(r"argument (\S+): invalid (float|int) value: '(.*)'")
+"""Error message of argparse for text that is not a number."""
+_HELP_UNIT_PATTERN = re.compile(r"\[([^\[\]]+)\]")
+"""Pattern of the unit in the help text of an option."""
 
 
 _METAVAR_BY_TYPE: dict[type, str] = {float: "VALUE", int: "N", Path: "FILE", str: "NAME"}

@@ -50,19 +50,22 @@ class TableColumns:
     values_by_name : {name: values (n)}
     line_numbers   : line number of each row in the file
     heading_units  : {name: unit in the heading of the file}
+    heading_cells  : all headings of the file
     """
 
     table_path: Path
     values_by_name: Mapping[str, Array]
     line_numbers: Sequence[int] = ()
     heading_units: Mapping[str, str] = field(default_factory=dict)
+    heading_cells: Sequence[str] = ()
 
     def require_column(self, column_name: str, allowed_units: Mapping[str, UnitSizes]) -> Array:
         """Values (n) of a column in SI units. Raises ValueError if the file does not have the column."""
         if column_name not in self.values_by_name:
             raise ValueError(
                 f"{self.table_path}: has no column {column_name!r}; expected "
-                f"{format_expected_heading({column_name: allowed_units[column_name]})}"
+                f"{format_expected_heading({column_name: allowed_units[column_name]})}; it has "
+                f"{', '.join(cell.strip() for cell in self.heading_cells)[:120]}"
             )
         return self.values_by_name[column_name]
 
@@ -135,12 +138,13 @@ def read_columns(
     rows = _split_rows([line for _, line in lines[1:]], mark)
     if any(len(row) != len(head) for row in rows):
         for number, row in zip(numbers, rows, strict=True):
-            check_cell_count(table_path, number, row, len(head))
+            check_cell_count(table_path, number, row, len(head), mark)
     columns = {
         name: _parse_column(table_path, name, numbers, [row[place] for row in rows]) * size
         for name, (place, size, _) in places.items()
     }
-    return TableColumns(table_path, columns, numbers, {name: unit for name, (_, _, unit) in places.items()})
+    units = {name: unit for name, (_, _, unit) in places.items()}
+    return TableColumns(table_path, columns, numbers, units, head)
 
 
 def read_column_names(table_path: str | Path) -> list[str]:
@@ -236,12 +240,24 @@ def _split_rows(table_lines: Sequence[str], delimiter: str | None) -> list[list[
 
 
 def check_cell_count(
-    table_path: Path, line_number: int, row_cells: Sequence[str], expected_count: int
+    table_path: Path,
+    line_number: int,
+    row_cells: Sequence[str],
+    expected_count: int,
+    delimiter: str | None = None,
 ) -> None:
-    """Raise ValueError with the line number if a row of a table does not have `expected_count` cells."""
+    """Raise ValueError with the line number if a row of a table does not have `expected_count` cells.
+
+    delimiter : separator of the cells
+    """
     if len(row_cells) != expected_count:
         raise ValueError(
             f"{table_path}: line {line_number} has {len(row_cells)} columns, expected {expected_count}"
+            + (
+                "; commas separate the columns, so numbers need a decimal point"
+                if len(row_cells) > expected_count and delimiter == ","
+                else ""
+            )
         )
 
 
@@ -302,8 +318,8 @@ def _find_columns(
             places[name] = place, unit_size_in(unit, allowed_units[name]), unit
         except ValueError:
             raise ValueError(
-                f"{table_path}: column {name!r} has unit {unit!r}, allowed are {allowed} and other units of "
-                "the same quantity"
+                f"{table_path}: column {name!r} has unit {unit!r}, allowed are {allowed} or another unit "
+                "of the same quantity; convert the column"
             ) from None
     if not places:
         shown = ", ".join(cell.strip() for cell in heading_cells)[:80]

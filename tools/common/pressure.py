@@ -103,14 +103,14 @@ def judge_joint_stiffness(
     )
 
 
-def warn_missing_members(parameter_file: ParameterFile) -> list[str]:
-    """List a warning if an exported file has only the interface of a joint, and not its elastic members."""
+def warn_missing_members(parameter_file: ParameterFile, advice: str = "its FMU has the members") -> list[str]:
+    """List a warning if a written file has only the interface of a joint, and not its elastic members."""
     if not getattr(parameter_file.values, "has_elastic_members", False):
         return []
     return [
         f"{parameter_file.name!r} is a complete joint (sides = elastic), but this file has the "
-        "interface only: between "
-        "rigid bodies it is far too stiff, because the members are missing; the FMU has them"
+        "interface only: between rigid bodies it is far too stiff, because the members are missing; "
+        f"{advice}"
     ]
 
 

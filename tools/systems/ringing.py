@@ -17,7 +17,7 @@ from ..common.joint_parts import load_tool_module
 from .master import Slave, damping_ratio, find_peak_frequency, simulate_body_on_joint
 from .ssp import find_fmu_names, list_archive_values
 from .system import Component, System, load_systems
-from .wiring import find_signals
+from .wiring import find_connections, find_signals
 
 STEPS_PER_PERIOD = 100
 """Number of communication steps per period of a vibration [1]."""
@@ -180,6 +180,7 @@ class VibratingJoint:
     fmu_name          : name of the joint's FMU
     moving_body       : body that vibrates
     inertia_parameter : parameter of this body that is its inertia
+    locked_bodies     : names of the other bodies on the joint
     """
 
     vibration_test: VibrationTest
@@ -187,6 +188,7 @@ class VibratingJoint:
     fmu_name: str
     moving_body: Component
     inertia_parameter: str
+    locked_bodies: tuple[str, ...]
 
     @property
     def parameters(self) -> dict[str, Any]:
@@ -208,6 +210,24 @@ class VibratingJoint:
             if value is None
             else value
         )
+
+    @property
+    def simplification_notes(self) -> list[str]:
+        """Notes on what `simulate_vibrations` changes in the system, for the user."""
+        notes = [
+            f"{self.joint.name}: {name} = 0 in this simulation, not {self.parameters[name]:g}: the joint "
+            "follows the midline of its loop. Small vibrations, in which nothing slips, have a higher "
+            "frequency: state --amplitude"
+            for name, value in self.vibration_test.frictionless_parameters.items()
+            if self.parameters.get(name, value) != value
+        ]
+        if self.locked_bodies:
+            notes.append(
+                f"largest_step and largest_step_late are those with {', '.join(self.locked_bodies)} held; if "
+                f"{'they move' if self.locked_bodies[1:] else 'it moves'}, the limits are shorter: jointfmu "
+                "system compares interval with the limit of the system"
+            )
+        return notes
 
     @property
     def inertia_unit(self) -> str:
@@ -252,7 +272,14 @@ def find_vibrating_joint(system: System, joint_name: str | None = None) -> Vibra
             f"{body.motion_inputs[0]}"
         )
     key = next(iter(dict(flatten_fields(PARTNERS[body.body_model].parameter_class))))
-    return VibratingJoint(body, joints[name], find_fmu_names(system)[name], moving, key)
+    locked = [
+        other.component.name
+        for end, other in find_connections(system)
+        if end.component is joints[name] and other.component not in (None, moving) and other.component
+    ]
+    return VibratingJoint(
+        body, joints[name], find_fmu_names(system)[name], moving, key, tuple(dict.fromkeys(locked))
+    )
 
 
 def simulate_example_vibrations(fmu_folder: Path) -> dict[str, list[FreeVibration]]:

@@ -114,11 +114,14 @@ class LoadCycle:
     """Load cycle that shows hysteresis: the input oscillates about its start value, from the virgin state.
 
     variable_values : {parameter or input: value} for which the loop encloses an area
+    find_output_scales : function (parameter set, {output: values over the cycle}) -> {output: scale} of
+        outputs whose round-off is not relative to each value, but to this scale; or None
     """
 
     input_name: str
     input_amplitude: float
     variable_values: Mapping[str, float | bool]
+    find_output_scales: Callable[[Any, Mapping[str, NDArray[np.float64]]], Mapping[str, float]] | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,6 +18,8 @@ UnitSizes: TypeAlias = Mapping[str, float]
 
 _FORCE_EXPONENTS = {"kg": 1, "m": 1, "s": -2}
 """Exponents of the SI base units of the newton."""
+_PRESSURE_EXPONENTS = {"kg": 1, "m": -1, "s": -2}
+"""Exponents of the SI base units of the pascal."""
 _DEGREE_IN_RAD = 1 / Fraction(degrees(1.0))
 """Size of a degree in radians, as an exact fraction of a float."""
 _UNIT_SYMBOLS: dict[str, tuple[Fraction | int, dict[str, int]]] = {
@@ -30,7 +32,10 @@ _UNIT_SYMBOLS: dict[str, tuple[Fraction | int, dict[str, int]]] = {
     "Hz": (1, {"s": -1}),
     "N": (1, _FORCE_EXPONENTS),
     "kgf": (Fraction("9.80665"), _FORCE_EXPONENTS),
-    "Pa": (1, {"kg": 1, "m": -1, "s": -2}),
+    "lbf": (Fraction("4.4482216152605"), _FORCE_EXPONENTS),
+    "Pa": (1, _PRESSURE_EXPONENTS),
+    "bar": (100000, _PRESSURE_EXPONENTS),
+    "psi": (Fraction("4.4482216152605") / Fraction("0.0254") ** 2, _PRESSURE_EXPONENTS),
     "J": (1, {"kg": 1, "m": 2, "s": -2}),
     "W": (1, {"kg": 1, "m": 2, "s": -3}),
     "t": (1000, {"kg": 1}),

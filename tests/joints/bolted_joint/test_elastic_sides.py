@@ -634,7 +634,8 @@ def test_stiffness_over_preload_gives_the_roughness_of_the_whole(made, tmp_path)
     assert found.solution.relative_deviations["h"] < 0.01
     assert not found.warnings()
     alone = over_preload.fit(path, replace(start, values=with_rigid_members(start.values)))
-    assert "the law deviates systematically from the curve" in alone.warnings()[-1]
+    for text in ("the law deviates systematically from the curve", "start from a file with sides = elastic"):
+        assert any(text in line for line in alone.warnings())
 
 
 def test_loops_give_friction_and_roughness_of_the_whole(made, tmp_path):

@@ -1,5 +1,7 @@
 """Pressure field in a bolted joint: reduction to few points, moment, parameter file, FMU."""
 
+import re
+from argparse import Namespace
 from dataclasses import replace
 
 import coarse
@@ -8,6 +10,7 @@ import pytest
 from conftest import here_alone
 from jointfmu_fmu_src.building import build_fmus
 from jointfmu_tools import cli
+from jointfmu_tools.cli.commands.assembly import bodies
 from jointfmu_tools.exchange.modelica import library
 from jointfmu_tools.inputs.fields import nodal_result, reduction
 from jointfmu_tools.inputs.fields.joint_parameters import insert_pressure_field, normalise_pressure_field
@@ -19,6 +22,7 @@ from jointfmu_tools.inputs.fields.sums import (
     ForceAndStiffnessFunctions,
     LoadCase,
 )
+from jointfmu_tools.joints.bolted_joint.field import PlaneLayout
 from jointfmu_tools.joints.bolted_joint.published import pressure_between_bolts
 from jointfmu_tools.run.ramps import ramp
 from oracles import contact_patches
@@ -383,7 +387,7 @@ def test_import_draws_and_refuses(tmp_path, capsys, enter):
     message = capsys.readouterr().err
     assert message.startswith(f"jointfmu footprint: {path}: line ")
     assert message.count("\n") == 1
-    assert "has no pressure, as " in message
+    assert "has no pressure; " in message
     assert cli.main([*line, "--open", "drop", "--plot", str(tmp_path / "a.png"), "--json"]) == 0
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
     for more, text in (
@@ -396,3 +400,57 @@ def test_import_draws_and_refuses(tmp_path, capsys, enter):
     ):
         assert cli.main([*line, "--open", "keep", *more]) == 2
         assert text in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("factor", "told"), [(1e-6, "about 1e6 too small"), (1e3, "about 1e3 too large")])
+def test_a_wrong_unit_of_the_pressure_is_named_and_not_scaled(factor, told):
+    wrong = replace(FIELD, nodal_pressure=factor * FIELD.nodal_pressure)
+    with pytest.raises(ValueError, match=told) as error:
+        insert_pressure_field(FILE, wrong, PRELOAD, "test")
+    assert "tolerance" not in str(error.value)
+
+
+def test_the_printed_preload_gives_the_fmu_the_imported_pressure(tmp_path, capsys):
+    """The imported field is that after embedding; the input `preload` is the force before embedding."""
+    (tmp_path / "joint.toml").write_text(
+        format_parameter_file(FILE.with_values({"embedding": 700.0}, "user", "measured"))
+    )
+    path, out = tmp_path / "field.csv", tmp_path / "out.toml"
+    path.write_text(nodal_result.format_field_csv(FIELD))
+    words = ["footprint", "import", str(path), "--preload", f"{PRELOAD:g}"]
+    assert cli.main([*words, "--params", str(tmp_path / "joint.toml"), "--out", str(out)]) == 0
+    printed = capsys.readouterr().out
+    preload = float(re.search(r"^set preload = (\S+) N in the FMU", printed, re.MULTILINE)[1])
+    found = BoltedJointSpring.from_joint(load_parameter_file(out).values).evaluate(
+        preload, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    )
+    mean = FIELD.normal_force / FIELD.nodal_area.sum()
+    assert found["p_mean"] == pytest.approx(mean, rel=1e-4)  # the printed preload has five digits
+    assert f"K_zz = {found['K_zz']:.4g} N/m" in printed
+
+
+def test_positions_of_the_bolts_are_found_in_a_field():
+    positions = np.array([[-0.1, -0.1], [0.1, -0.1], [-0.1, 0.1], [0.1, 0.1]])
+    found, _ = insert_pressure_field(
+        FILE, FIELD, PRELOAD, "test", bolt_positions=positions + FIELD.contact_centroid
+    )
+    layout = PlaneLayout.from_joint_parameters(found.values)
+    np.testing.assert_allclose(layout.bolt_positions, positions, atol=1e-15)
+
+
+@pytest.mark.parametrize("has_holes", [False, True])
+def test_plates_around_a_field_have_the_size_of_the_contact(has_holes):
+    """Nodes on a grid of 200 x 100 mm, edges included, with and without holes of 13.5 mm in the contact."""
+    x, y = (array.ravel() for array in np.meshgrid(np.linspace(-0.1, 0.1, 81), np.linspace(-0.05, 0.05, 41)))
+    share = np.where(np.abs(x) > 0.0999, 0.5, 1.0) * np.where(np.abs(y) > 0.0499, 0.5, 1.0)
+    bolts, hole = np.array([[-0.08, -0.03], [0.08, -0.03], [-0.08, 0.03], [0.08, 0.03]]), 13.5e-3
+    area = share / share.sum() * 0.02
+    if has_holes:
+        inside = (np.hypot(x[:, None] - bolts[:, 0], y[:, None] - bolts[:, 1]) < 0.5 * hole).any(axis=1)
+        x, y, area = x[~inside], y[~inside], area[~inside]
+        area *= (0.02 - len(bolts) * 0.25 * np.pi * hole**2) / area.sum()
+    contact = ContactPressureField(area, np.column_stack([x, y]), np.ones(area.size))
+    stated = Namespace(hole="13.5", head="18", thickness=("20", "20"))
+    assembly, notes = bodies.build_assembly(stated, FILE, contact, bolts)
+    assert (assembly.side1.length, assembly.side1.width) == pytest.approx((0.2, 0.1), rel=1e-12)
+    assert "200 x 100 mm, of which the contact covers 100%" in notes[0]

@@ -113,6 +113,53 @@ def test_a_load_that_is_measured_gives_the_losses(tmp_path):
     assert legend.y0 >= data.y1  # beside the curves
 
 
+@pytest.mark.parametrize("is_measured", [False, True])
+def test_losses_of_an_unmeasured_load_are_not_stated_as_determined(tmp_path, is_measured):
+    """Without a measured load, (1 + load_loss)/(1 - load_loss_back) is all that the log determines: any
+    load_loss_back fits with another load. The kept value of the start file is 40 % off."""
+    t = np.arange(0.0, 30.0, 0.01)
+    waves = ((0.7, 0.31), (0.4, 0.83))
+    q = sum(a * np.sin(2.0 * np.pi * f * t) for a, f in waves)
+    dq = sum(2.0 * np.pi * f * a * np.cos(2.0 * np.pi * f * t) for a, f in waves)
+    ddq = sum(-((2.0 * np.pi * f) ** 2) * a * np.sin(2.0 * np.pi * f * t) for a, f in waves)
+    gravity = robot_log.GRAVITY * np.sin(q)
+    load, w1 = gravity + robot_log.ARM * ddq, 100.0 * dq
+    truth = robot_log.drive().with_values({"ratio": 100.0}, "user", "in the joint's sense").values
+    positive, negative = friction_limits(truth, w1, -load)
+    torque = np.where(dq > 0.0, positive, -negative) + viscous_torque(truth, w1)
+    torque += load / 100.0 + robot_log.ROTOR * 100.0 * ddq
+    torque += 2e-3 * np.random.default_rng(3).standard_normal(t.size)
+    heads = [("time", "s"), ("q", "rad"), ("dq", "rad/s"), ("motor_torque", "N.m")]
+    data = [t, q, dq, torque]
+    if is_measured:
+        heads, data = [*heads, ("gravity", "N.m")], [*data, gravity]
+    path = tmp_path / "log.csv"
+    path.write_text(columns.format_table(heads, data, 9))
+    found = log.fit([path], robot_log.start(), motor_inertia=robot_log.ROTOR)
+    fitted, deviation = found.parameters.values, found.solution.relative_deviations["load_loss"]
+    ratio = (1.0 + TRUE_VALUES["load_loss"]) / (1.0 - TRUE_VALUES["load_loss_back"])
+    assert (1.0 + fitted.load_loss) / (1.0 - fitted.load_loss_back) == pytest.approx(ratio, rel=5e-3)
+    assert abs(math.log(fitted.load_loss / TRUE_VALUES["load_loss"])) < 4.0 * deviation
+    assert ("load_loss" in found.confidence_intervals) == is_measured
+    if is_measured:
+        assert fitted.load_loss == pytest.approx(TRUE_VALUES["load_loss"], rel=0.05)
+    else:
+        assert any("a column gravity [N.m]" in note for note in found.notes)
+
+
+@pytest.mark.parametrize(("ratio", "is_refused"), [(50.0, True), (102.0, True), (100.0, False)])
+def test_angles_that_contradict_the_ratio_are_refused(tmp_path, ratio, is_refused):
+    """The log is one of a drive with ratio 100, whose wind-up is no contradiction."""
+    path = tmp_path / "log.csv"
+    robot_log.write_swing(path, 1, duration=10.0, step=8e-3)
+    start = robot_log.start().with_values({"ratio": ratio}, "user", "stated")
+    if is_refused:
+        with pytest.raises(ValueError, match=f"times q, but the ratio of the drive is {ratio:g}"):
+            log.fit([path], start, torque_constant=robot_log.CONSTANT)
+    else:
+        log.fit([path], start, torque_constant=robot_log.CONSTANT)
+
+
 # a measured robot
 
 

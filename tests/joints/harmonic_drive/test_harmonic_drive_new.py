@@ -331,7 +331,7 @@ def test_lost_motion_is_told_beside_its_limit(capsys):
     with a softer drive."""
     for words, place in (([], "below"), (["--K1", "20000"], "above")):
         assert cli.main(["new", "harmonic-drive", "--catalogue", "CSG-25-100", *words]) == 0
-        assert f"; {place} 0.0002909 rad: limit" in capsys.readouterr().out
+        assert f"; {place} 0.0002909 rad (1 arcmin): limit" in capsys.readouterr().out
 
 
 START = ("--starting-torque", "0.03")

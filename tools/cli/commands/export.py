@@ -58,11 +58,11 @@ def add_command(command_parsers: SubParsers) -> None:
     export.add_argument(
         "what",
         metavar="WHAT",
-        help="springs: stiffness matrix of the complete joint between two nodes, or, with rigid sides or "
-        "--interface, springs and dashpots between node pairs "
-        f"({', '.join(KINDS[joint].title for joint in with_springs)}); contact: pressure over overclosure; "
-        f"curve: load over displacement of the complete joint; for {', '.join(ROBOT_FORMATS)}: parameter "
-        "file of a drive or its name in the catalogue",
+        help=f"springs: stiffness of the {', '.join(KINDS[joint].title for joint in with_springs)}, as a "
+        "matrix between two nodes; with rigid sides or --interface as springs and dashpots between node "
+        "pairs. contact: table of pressure over overclosure. curve: table of load over displacement of the "
+        f"complete joint. For {', '.join(ROBOT_FORMATS)}, WHAT is the parameter file of a drive or its name "
+        "in the catalogue",
     )
     joint = export.add_mutually_exclusive_group()
     declare_argument(joint, "--params", Path, "parameter file of the joint (TOML), in place of --joint")
@@ -80,7 +80,8 @@ def add_command(command_parsers: SubParsers) -> None:
     }
     for name, texts in _working_point_meanings().items():
         if name in complete:
-            texts = [*texts, "of a complete joint: default from --params"]
+            needed = [] if "(default" in texts[0] else ["needed for springs with rigid sides"]
+            texts = [*texts, *needed, "with elastic sides, the default is the start value of --params"]
         text = "; ".join(texts)
         declare_argument(export, format_option_flag(name), float, text)
     text = "springs: write the interface alone, between node pairs, for your own model of plates and bolts"
@@ -100,14 +101,15 @@ def add_command(command_parsers: SubParsers) -> None:
         export,
         "--first",
         int,
-        "for springs: first number that your model leaves free for elements and nodes (default: 1)",
+        "springs: number of the first element and node that are written; choose it above those of your "
+        "model (default: 1)",
     )
     text = (
-        "for ansys: first number that your model leaves free for element types and real constants "
-        "(default: 1)"
+        "ansys: number of the first element type and real constant that are written; choose it above those "
+        "of your model (default: 1)"
     )
     declare_argument(export, "--first-set", int, text)
-    text = "for springs: axis of your model that is normal to the contact (default: z)"
+    text = "springs: axis of your model that is normal to the contact (default: z)"
     export.add_argument("--normal", choices=list(AXIS_ORDER), help=text)
     text = f"units of the written file: length-force-stress-mass (default: {SI_UNIT_SET.unit_set_name})"
     export.add_argument("--units", choices=list(UNIT_SETS), default=SI_UNIT_SET.unit_set_name, help=text)
@@ -117,8 +119,8 @@ def add_command(command_parsers: SubParsers) -> None:
     )
     declare_argument(export, "--error", float, text, "E")
     text = (
-        f"{', '.join(ROBOT_FORMATS)}: the written spring fits the drive up to this torque [N.m] (default: "
-        "rated torque)"
+        f"{', '.join(ROBOT_FORMATS)}: largest torque [N.m] up to which the written spring is fitted to the "
+        "drive (default: rated torque)"
     )
     declare_argument(export, "--torque", float, text, "T")
     declare_output(export, "--out", EXPORTED_TEXT_FILE, "file to write", required=True)

@@ -54,11 +54,9 @@ def _declare_procedure_command(
             "measured data (CSV); the heading names columns and units, as in torque [N.m]",
             nargs=many,
         )
-    declare_argument(sub, "--params", Path, "parameter file to start from (TOML)")
-    text = (
-        "parameters to fit, as in mu surface.G (default: those that such data determine; the output lists "
-        "them)"
-    )
+    starts = "; ".join(procedure.default_start_text for procedure in procedure_by_joint.values())
+    declare_argument(sub, "--params", Path, f"parameter file to start from, TOML (default: {starts})")
+    text = "names of the parameters to fit (default: selected by law and data, printed in the output)"
     declare_argument(sub, "--free", str, text, nargs="+")
     text = f"{FORCE_OPTION_HELP}; write the parameter file even if the fit does not determine the joint"
     sub.add_argument("--force", action="store_true", help=text)

@@ -37,7 +37,10 @@ def add_command(command_parsers: SubParsers) -> None:
     )
     declare_argument(at, "--largest-spot", float, "area of the largest contact spot [m2]", "A", nargs="+")
     declare_argument(
-        law, "--params", Path, "parameter file of a joint with this law, in place of the default (TOML)"
+        law,
+        "--params",
+        Path,
+        "parameter file of a joint with this law (TOML; default: that of a shipped joint with this law)",
     )
     declare_set_option(
         law, "set parameters of the law (SI units), as in surface.D=2.45; see jointfmu parameters LAW"

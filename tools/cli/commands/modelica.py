@@ -29,7 +29,11 @@ def add_command(command_parsers: SubParsers) -> None:
     for name, kinds in _working_point_inputs().items():
         first = any(name == kind.working_point[0] for kind in kinds)
         text = "; ".join(f"{kind.title}: {_describe_working_point_input(kind, name)}" for kind in kinds)
-        text += "" if first else f" (default: {kinds[0].variables[name].start:g})"
+        text += (
+            ", one record of the joint for each value (default: that of --params, and 9000 and 15000)"
+            if first
+            else f" (default: {kinds[0].variables[name].start:g})"
+        )
         declare_argument(make, format_option_flag(name), float, text, nargs="+" if first else None)
     declare_output(make, "--out", OUTPUT_FOLDER, "folder to write", default=Path("dist"))
 
@@ -68,7 +72,8 @@ def _working_point_inputs() -> dict[str, list[JointKind]]:
 def _describe_working_point_input(joint_kind: JointKind, input_name: str) -> str:
     """Help text of the option for an input (load, temperature) whose value each Modelica record states."""
     variable = joint_kind.variables[input_name]
-    return f"{variable.doc} [{variable.unit}]"
+    meaning, *remarks = variable.doc.split(";")
+    return ";".join([f"{meaning} [{variable.unit}]", *remarks])
 
 
 def _read_working_points(joint_kind: JointKind, args: argparse.Namespace) -> list[tuple[float, ...]]:

@@ -14,7 +14,7 @@ from jointfmu.parameters import load_parameter_file
 from ...fem import require_fem_packages
 from ...joints.bolted_joint.frequencies import compare_natural_frequencies
 from ...run.proof import listing, report
-from ...run.proof.importers import IMPORTERS
+from ...run.proof.importers import IMPORTERS, SUPPORTED_FMI_VERSIONS
 from ...run.proof.run import ExpectedFmuContents, prove
 from ...studies.published import law_reference, validation
 from ..command import CommandResult, SubParsers, declare_argument, declare_command
@@ -26,7 +26,11 @@ def add_command(command_parsers: SubParsers) -> None:
     text = "run the experiments stored in an FMU (FMI-LS-REF) and compare with its reference results"
     sub = declare_command(command_parsers, "prove", _run_prove, text)
     declare_argument(sub, "fmu", Path, "path of the FMU (.fmu)", "FMU")
-    text = f"program that imports and runs the FMU: {', '.join(IMPORTERS)}"
+    programs = (
+        f"{name} (FMI {' and '.join(f'{digit}.0' for digit in SUPPORTED_FMI_VERSIONS[name])})"
+        for name in IMPORTERS
+    )
+    text = f"program that imports and runs the FMU: {', '.join(programs)}"
     choices = list(IMPORTERS)
     declare_argument(sub, "--in", str, text, "IMPORTER", dest="importer", choices=choices, default="fmpy")
     text = "folder to write for the FMI cross-check, if all experiments pass"

@@ -39,24 +39,24 @@ def add_command(command_parsers: SubParsers) -> None:
     declare_argument(
         drive, "--input", str, "input of the FMU to vary, as in preload or s_rel_x", required=True
     )
-    declare_argument(drive, "--to", float, "ramp: last value of the input (SI units); the first is 0")
-    declare_argument(drive, "--step", float, "ramp: step of the input (SI units)")
+    text = "ramp: last value of the input (SI unit, as in 30e3 for 30 kN); the first is 0, or that of --set"
+    declare_argument(drive, "--to", float, text)
+    declare_argument(drive, "--step", float, "ramp: step of the input (SI unit)")
     declare_argument(
         drive,
         "--loop",
         float,
-        "cycles: amplitudes of the input (SI units), each in a new run of the FMU",
+        "cycles: amplitudes of the input (SI unit), each in a new run of the FMU",
         nargs="+",
     )
-    declare_argument(drive, "--about", float, "cycles: mean value of the input (SI units; default: 0)")
+    declare_argument(drive, "--about", float, "cycles: mean value of the input (SI unit; default: 0)")
     drive.add_argument(
         "--shape",
         choices=loops.WAVEFORMS,
         help=f"cycles: shape of the input over time (default: {loops.WAVEFORMS[0]})",
     )
-    declare_argument(
-        drive, "--points", int, f"cycles: points per cycle (default: {loops.DEFAULT_POINTS_PER_CYCLE})"
-    )
+    text = "cycles: points per cycle; the first loading adds a quarter of them (default: "
+    declare_argument(drive, "--points", int, f"{text}{loops.DEFAULT_POINTS_PER_CYCLE})")
     declare_argument(
         drive,
         "--cycles",
@@ -71,7 +71,8 @@ def add_command(command_parsers: SubParsers) -> None:
         "by name)",
     )
     declare_argument(drive, "--columns", str, "ramp: outputs to print (default: all)", nargs="+")
-    declare_set_option(drive, "set parameters and other inputs (SI units), as in preload=9e3")
+    text = "set parameters and inputs (SI units), as in preload=9e3; for the input of a ramp: its first value"
+    declare_set_option(drive, text)
     declare_output(drive, "--csv", columns.TABLE_FILE_KIND, "write every point to a table (.csv)")
     declare_output(
         drive,
@@ -102,11 +103,17 @@ def _run_ramp_or_loops(args: argparse.Namespace) -> CommandResult:
     return _run_loops(args) if args.loop else _run_ramp(args)
 
 
-def _print_messages(fmu_messages: Iterable[str], driven_input: str) -> None:
-    """Print the messages of the FMU; omit the one that says that the driven input starts at 0."""
+def _print_messages(fmu_messages: Iterable[str], driven_input: str, input_unit: str) -> None:
+    """Print the messages of the FMU, except that the driven input starts at 0, the state without load.
+
+    A temperature of 0 K is no state without load, so its message is printed.
+    """
     for message in fmu_messages:
-        if not (message.startswith(f"{driven_input} = 0") and "in place of its start value" in message):
-            print(message, file=sys.stderr)
+        starts_at_zero = (
+            message.startswith(f"{driven_input} = 0") and "in place of its start value" in message
+        )
+        if not starts_at_zero or input_unit == "K":
+            print(f"warning: {message}", file=sys.stderr)
 
 
 def _warn_small_ramp(fmu_path: Path, input_name: str, end_value: float) -> None:
@@ -126,15 +133,22 @@ def _warn_small_ramp(fmu_path: Path, input_name: str, end_value: float) -> None:
 def _run_ramp(args: argparse.Namespace) -> CommandResult:
     """Run an FMU along a load ramp, and print or write its outputs."""
     result = ramp.run_ramp(args.fmu, args.input, args.to, args.step, dict(args.settings))
-    _print_messages(result.log_messages, args.input)
+    _print_messages(result.log_messages, args.input, result.variable_units[args.input])
+    if args.to is not None and any("is outside [" in message for message in result.log_messages):
+        unit = result.variable_units[args.input]
+        print(
+            f"note: --to = {args.to:g} {unit} is beyond the range of the law; check its unit", file=sys.stderr
+        )
     _warn_small_ramp(args.fmu, args.input, args.to)
     result = _select_columns(result, args.input, args.columns)
     if args.csv:
         write_text(args.csv, result.format_time_series_csv())
     if args.plot:
-        count = len(result.variable_columns) - 1
+        nonzero = [name for name, column in result.variable_columns.items() if np.any(column)]
+        drawn = result if args.columns or len(nonzero) < 2 else _select_columns(result, args.input, nonzero)
+        count = len(drawn.variable_columns) - 1
         with plots.open_figure(args.plot, (4.0 * min(count, 3), 2.8 * math.ceil(count / 3))) as figure:
-            _draw_ramp(figure, result)
+            _draw_ramp(figure, drawn)
     columns = {name: column.tolist() for name, column in result.variable_columns.items()}
     lines = [f"wrote {path}: {len(columns[args.input])} points" for path in (args.csv, args.plot) if path]
     if not lines and not args.json:
@@ -205,7 +219,7 @@ def _run_loops(args: argparse.Namespace) -> CommandResult:
     stated = {name: value for option, name in fields.items() if (value := getattr(args, option)) is not None}
     swing = loops.CyclicInputPath(**stated)
     found = loops.run_loops(args.fmu, args.input, args.loop, swing, args.output, dict(args.settings))
-    _print_messages(found.log_messages, args.input)
+    _print_messages(found.log_messages, args.input, found.loops[0].path_result.variable_units[args.input])
     if args.csv:
         write_text(args.csv, found.format_point_table())
     if args.plot:
@@ -213,7 +227,10 @@ def _run_loops(args: argparse.Namespace) -> CommandResult:
             _draw_loops(figure, found, swing)
     lines, written = found.format_quantity_table().splitlines(), (args.csv, args.plot)
     return CommandResult(
-        json_document=_loops_to_json(args.fmu, found), output_lines=lines, written_files=written
+        json_document=_loops_to_json(args.fmu, found),
+        output_lines=lines,
+        stderr_lines=[found.describe_loop_columns()],
+        written_files=written,
     )
 
 
@@ -259,15 +276,19 @@ def _draw_loops(
         left.plot(x, y, color=plots.BLUE, lw=1.2)
     first = slice(None, cyclic_path.points_per_cycle // 4 + 1)
     left.plot(
-        x_size * cycles[-1].displacements[first], y_size * cycles[-1].forces[first], "--", color=plots.RED
+        x_size * cycles[-1].displacements[first],
+        y_size * cycles[-1].forces[first],
+        "--",
+        color=plots.RED,
+        label="first loading",
     )
     ends = np.array([(x_size * loop.displacements[-1], y_size * loop.forces[-1]) for loop in cycles])
-    left.plot(*ends.T, "o", color=plots.RED, ms=4, label="first loading, ends of the loops")
+    left.plot(*ends.T, "o", color=plots.RED, ms=4, label="ends of the loops")
     left.set_xlabel(f"{hysteresis_loops.displacement_name} [{motion}]")
     left.set_ylabel(
         f"{'-' if hysteresis_loops.force_sign < 0.0 else ''}{hysteresis_loops.force_name} [{force}]"
     )
-    left.legend(loc="lower right")
+    left.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
     rows = [loop.compute_loop_quantities() for loop in cycles]
     amplitude, stiffness, loss = (
         np.array([row[name] for row in rows]) for name in ("motion", "secant_stiffness", "loss")

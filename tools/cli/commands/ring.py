@@ -36,7 +36,7 @@ def add_command(command_parsers: SubParsers) -> None:
     declare_argument(ring, "--fmus", Path, text, "DIR", default=Path("dist/fmi2"))
     text = (
         "loads of the joint, each simulated separately: preload (the same in each bolt) [N], or torque at "
-        "the output [N.m] (default: a series of loads)"
+        "the output [N.m] (default: four preloads from 3 to 30 kN, or torques from zero to rated torque)"
     )
     declare_argument(ring, "--load", float, text, nargs="+")
     text = "mass [kg], or for a rotating body moment of inertia [kg.m2] (default: the value in SYSTEM)"
@@ -70,6 +70,8 @@ def _run_resonance_simulation(args: argparse.Namespace) -> CommandResult:
     rows = [_resonance_row(point) for point in points]
     for message in dict.fromkeys(text for point in points for text in point.log_messages):
         print(message, file=sys.stderr)
+    for note in example.simplification_notes:
+        print(f"note: {note}", file=sys.stderr)
     table = _format_resonance_table(rows, example.load_unit)
     if args.csv:
         write_text(args.csv, table)

@@ -21,6 +21,7 @@ from jointfmu.files.writing import write_text
 
 from ...common import plots
 from ...common.options import require_package
+from ...inputs.drawing.reading import parse_number
 from ..command import CommandResult, SubParsers, declare_argument, declare_command
 from ..outputs import check_input_overwrite, declare_output
 
@@ -42,9 +43,10 @@ def add_command(command_parsers: SubParsers) -> None:
     )
     declare_argument(sub, "--drive", str, text, "JOINT=NAME", required=True, **several)
     declare_argument(
-        sub, "--payload", float, "mass of the payload, a point mass at the tip [kg]", "M", default=1.0
+        sub, "--payload", str, "mass of the payload, a point mass at the tip [kg]", "M", default="1"
     )
-    declare_argument(sub, "--tip", str, "body whose origin is the tip (default: the last body)", "BODY")
+    text = "body whose origin is the tip (default: the last body after the last axis)"
+    declare_argument(sub, "--tip", str, text, "BODY")
     sub.add_argument(
         "--pose",
         nargs="+",
@@ -52,9 +54,9 @@ def add_command(command_parsers: SubParsers) -> None:
         default=[],
         metavar="JOINT=ANGLE",
         help=(
-            "joint angles [rad] of the pose for deflection and vibration; other joints are at zero or as in "
-            "the first keyframe (default: of a grid of poses, the one with the largest deflection of the "
-            "tip)"
+            "joint angles [rad, or with a unit as in 90deg] of the pose for deflection and vibration; other "
+            "joints are at zero or as in the first keyframe (default: of a grid of poses, the one with the "
+            "largest deflection of the tip)"
         ),
     )
     text = "also write the robot with its drives as MuJoCo plugins, compiled on this machine"
@@ -72,6 +74,7 @@ def _run_robot(args: argparse.Namespace) -> CommandResult:
         _parse_joint_values(args.drive, "--drive", "NAME"),
         _parse_joint_values(args.pose, "--pose", "ANGLE"),
     )
+    args.payload = parse_number("payload", args.payload, "kg", "kg", lower_bound=None)
     if not 0.0 <= args.payload <= MAX_PAYLOAD:
         raise ValueError(f"--payload = {args.payload:g} kg is outside [0, {MAX_PAYLOAD:g}] kg")
     pictures = [args.out / f"{name}.png" for name in ("frequencies", "payload", "ringing")]
@@ -108,14 +111,16 @@ def _run_robot(args: argparse.Namespace) -> CommandResult:
     if args.fmu:
         robot_system.list_joint_names(model)
         check_outputs(list_system_fmu_paths(title, args.out), ARCHIVE_FILE, args.force)
-    made = elastic.add_drives(spec, axes)
-    _write_robot(written, made, args)
-    _write_robot(rigid, rigid_joints.add_rigid_drives(spec, axes), args)
-    write_text(actuators, rigid_joints.format_actuators(axes))
     grid, found = drawn.compute_frequencies_over_grid(model, axes, pose, args.payload, tip)
     drawn.draw_frequencies(pictures[0], axes, grid, found)
     if not angles:
         pose = drawn.find_worst_pose(model, axes, pose, grid, args.payload, tip)
+    elastic.set_default_time_step(spec, args.robot, poses.find_largest_stable_step(model, axes, pose))
+    has_new_step, model.opt.timestep = spec.option.timestep != model.opt.timestep, spec.option.timestep
+    longest = poses.find_largest_stable_step(model, axes, pose)
+    _write_robot(written, elastic.add_drives(spec, axes), args)
+    _write_robot(rigid, rigid_joints.add_rigid_drives(spec, axes), args)
+    write_text(actuators, rigid_joints.format_actuators(axes))
     wound, sunk = drawn.draw_deflection_over_payload(pictures[1], model, axes, pose, args.payload, tip)
     ringing = poses.compute_ringing(
         model, axes, pose, args.payload, tip, np.arange(0.0, RINGING_DURATION, RINGING_TIME_STEP)
@@ -139,13 +144,24 @@ def _run_robot(args: argparse.Namespace) -> CommandResult:
             more += build_system_fmus(
                 robot_system.make_robot_system(arm, title, text, args.payload), args.out, overwrite=args.force
             )
-    longest = poses.find_largest_stable_step(model, axes, pose)
     weight, jacobian = poses.compute_weight_torques(model, axes, pose, args.payload, tip)
     plain, plain_sunk = poses.compute_weight_deflection(
         model, axes, pose, args.payload, tip, [axis.fitted_spring for axis in axes]
     )
     under = list(zip(axes, weight.tolist(), strict=True))
-    notes = [line for axis in axes for line in axis.deviation_notes]
+    notes = []
+    if has_new_step:
+        notes.append(
+            f"{args.robot} states no timestep; the written files have {model.opt.timestep:g} s. MuJoCo can "
+            f"diverge with steps above {longest:.3g} s"
+        )
+    elif model.opt.timestep > longest:
+        notes.append(
+            f"the timestep of {args.robot}, {model.opt.timestep:g} s, is too long for the drives: MuJoCo can "
+            f"diverge; use at most {longest:.3g} s, and write the files again"
+        )
+    notes += [line for axis in axes for line in axis.deviation_notes]
+    notes += elastic.list_presliding_notes(spec, axes)
     notes += [line for axis, torque in under for line in axis.list_overload_warnings(torque)]
     largest = drawn.compute_largest_torques(model, axes, pose, grid, args.payload, tip).tolist()
     notes += _describe_other_poses(under, largest)
@@ -172,11 +188,6 @@ def _run_robot(args: argparse.Namespace) -> CommandResult:
         for line in axis.drive.omitted_effects
     )
     notes += dict.fromkeys(lacking)
-    if model.opt.timestep > longest:
-        notes.append(
-            f"the timestep of the MJCF, {model.opt.timestep:g} s, is too long for the drives; use at most "
-            f"{longest:.3g} s"
-        )
     facts = {
         "written": [str(path) for path in (written, rigid, actuators, *pictures, *more)],
         "payload": args.payload,
@@ -278,7 +289,8 @@ def _format_results(json_document: dict[str, Any], robot_model: Any) -> Sequence
         f"{1e3 * plain['tip_error']:.4g} mm",
         *(
             f"stop of {name} from rated torque: the tip rings with {1e3 * values['amplitude']:.3g} mm, "
-            f"after {RINGING_DURATION:g} s with {1e3 * values['last_amplitude']:.3g} mm"
+            f"between {0.9 * RINGING_DURATION:g} s and {RINGING_DURATION:g} s with "
+            f"{1e3 * values['last_amplitude']:.3g} mm"
             for name, values in json_document["ringing"].items()
         ),
         *json_document["notes"],

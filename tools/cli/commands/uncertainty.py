@@ -63,7 +63,11 @@ def add_command(command_parsers: SubParsers) -> None:
     _declare_sampling_options(
         study, f"default: {DEFAULT_JOINT_SAMPLE_COUNT}; for an FMU: {DEFAULT_FMU_SAMPLE_COUNT}"
     )
-    declare_argument(study, "--to", float, "last value of the load ramp (SI units), needed for an FMU")
+    text = (
+        "last load of the ramp (SI unit, as in 30e3 for 30 kN), needed for an FMU (default for a joint: the "
+        "load of --params, else a typical load)"
+    )
+    declare_argument(study, "--to", float, text)
     declare_argument(
         study,
         "--points",
@@ -71,7 +75,7 @@ def add_command(command_parsers: SubParsers) -> None:
         f"joint: number of points of the load ramp (default: {DEFAULT_RAMP_POINT_COUNT})",
     )
     declare_argument(study, "--input", str, "FMU: input to vary along the ramp")
-    declare_argument(study, "--step", float, "FMU: step of the ramp (SI units)")
+    declare_argument(study, "--step", float, "FMU: step of the ramp (SI unit)")
     declare_output(study, "--csv", columns.TABLE_FILE_KIND, "write the bands over the load (.csv)")
     declare_output(study, "--plot", PICTURE_FILE, "draw bands and sensitivity indices (.png, .svg)")
     _declare_run_options(
@@ -287,8 +291,8 @@ def add_sweep_command(command_parsers: SubParsers) -> None:
     declare_argument(many, "fmu", Path, "path of the FMU (.fmu)", "FMU")
     _declare_sampling_options(many, f"default: {DEFAULT_FMU_SAMPLE_COUNT}")
     declare_argument(many, "--input", str, "input to vary along the ramp", required=True)
-    declare_argument(many, "--to", float, "last value of the ramp (SI units)", required=True)
-    declare_argument(many, "--step", float, "step of the ramp (SI units)", required=True)
+    declare_argument(many, "--to", float, "last value of the ramp (SI unit)", required=True)
+    declare_argument(many, "--step", float, "step of the ramp (SI unit)", required=True)
     _declare_run_options(many, "folder for the results", required=True)
 
 

@@ -6,9 +6,10 @@ w is the speed of the motor [rad/s], z the bristle deflection [rad]. From rest t
 static (1 - exp(-angle/presliding)). This and steady sliding are as in the FMU. After a reversal the torque
 follows Dahl's branch, in the FMU Masing's. Unlike `frictionloss` it is a passive force without a constraint.
 
-MuJoCo integrates z explicitly, which is unstable without damping. So c and the viscous friction damp the
-bristle critically with the inertia of the motor, and k is limited to inertia/step^2. The torque is clipped at
-the static friction, since damped bristles would hold a turning motor; so at speed friction acts at once,
+MuJoCo takes friction and w from the start of a step h. So the bristle is unstable without damping, and with
+too much of it. c and the viscous friction damp it critically with the inertia J of the motor, up to J/(f h).
+Here f = 1 + static/dry is the largest dz/dt over w, after a reversal: the torque of the damping never
+reverses w in one step. k is at most half of this damping over h. So friction at speed acts almost at once,
 without presliding. With the integrator RK4 the bristles are unstable.
 """
 
@@ -31,9 +32,25 @@ def compute_lugre_parameters(
     Returns stiffness [N.m/rad] and damping [N.m.s/rad] of the bristles, Coulomb and static friction [N.m],
     Stribeck speed [rad/s].
     """
-    stiffness = min(drive.static_friction / drive.presliding_angle, motor_inertia / time_step**2)
-    damping = max(2.0 * float(np.sqrt(stiffness * motor_inertia)) - drive.viscous_friction, 0.0)
+    max_damping = motor_inertia / (_max_bristle_speed_ratio(drive) * time_step)
+    stiffness = min(drive.static_friction / drive.presliding_angle, max_damping / (2.0 * time_step))
+    damping = min(2.0 * float(np.sqrt(stiffness * motor_inertia)), max_damping)
+    damping = max(damping - drive.viscous_friction, 0.0)
     return stiffness, damping, drive.dry_friction, drive.static_friction, drive.stribeck_speed
+
+
+def _max_bristle_speed_ratio(drive: Transmission) -> float:
+    """Largest ratio [1] of the bristle speed dz/dt to the motor speed w, after a reversal of w.
+
+    Without Coulomb friction there is no bound; the result is then that without Stribeck effect.
+    """
+    return 1.0 + (drive.static_friction / drive.dry_friction if drive.dry_friction else 1.0)
+
+
+def compute_max_damping(drive: Transmission, motor_inertia: float, time_step: float) -> float:
+    """Largest ratio [N.m.s/rad] of the velocity-dependent friction torque to the motor speed, in MuJoCo."""
+    _, damping, *_ = compute_lugre_parameters(drive, motor_inertia, time_step)
+    return _max_bristle_speed_ratio(drive) * damping + drive.viscous_friction
 
 
 def compute_presliding_angle(drive: Transmission, motor_inertia: float, time_step: float) -> float:

@@ -2,7 +2,7 @@
 
 import os
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
@@ -15,8 +15,9 @@ import numpy as np
 from jointfmu.files.reading import check_regular_file
 from jointfmu.quantity import Array
 
+from ...inputs.drawing.reading import parse_number
 from . import bristles
-from .mjcf import check_mujoco_version
+from .mjcf import MUJOCO_DEFAULT_TIME_STEP, check_mujoco_version
 from .spring_fit import FittedSpring, fit_spring
 from .transmission import Transmission
 
@@ -26,8 +27,13 @@ MOTOR_NAME_SUFFIX = "_motor"
 """Suffix of the name of a motor joint, after the name of the driven joint."""
 MOTOR_BODY_NAME_PREFIX = "drive_motors"
 """Prefix of the names of the bodies that carry the motors."""
+TIME_STEP_SAFETY_FACTOR = 2.0
+"""Largest stable step over the step that is written for a robot without time step, at least [1].
+
+Beyond the rated torque the springs are stiffer than the stable step assumes: up to four times is allowed."""
 _ADVICE_BY_MUJOCO_ERROR = {
     "mjMINVAL": "; state the mass and the inertia of this link in its <inertial>",
+    "could not find decoder": "; MuJoCo reads files that end in .xml or .urdf; a drive belongs to --drive",
     "Error opening file": "; expected this file in the folder of the robot file, or in its meshdir",
 }
 """{part of an error of MuJoCo: what the user can do}, behind the error."""
@@ -132,20 +138,43 @@ def make_axes(robot_spec: Any, drive_by_joint: Mapping[str, Transmission]) -> li
             if rotor <= 0.0:
                 rotor = float(matrix[dof, dof])
                 notes.append(
-                    "no armature in the file; the rotor inertia is set equal to the inertia that the axis "
-                    "moves in the reference pose of the file"
+                    f"no armature in the file; it is set to {rotor:.4g} kg.m2, the inertia that the axis "
+                    "moves in the reference pose of the file; the rotor inertia is then "
+                    f"{rotor / drive.ratio**2:.4g} kg.m2"
                 )
-            if drive.static_friction and bristles.is_integrator_stable(model.opt):
-                angle = bristles.compute_presliding_angle(drive, rotor / drive.ratio**2, model.opt.timestep)
-                if angle > 1.01 * drive.presliding_angle:
-                    notes.append(
-                        f"friction builds up over {angle:.3g} rad of the motor in the MJCF, because its "
-                        f"steps are long, and over {drive.presliding_angle:g} rad in the FMU"
-                    )
             lines = tuple(f"{joint.name}: {line}" for line in notes)
             spring = fit_drive(drive, drive.rated_torque)
             elastic_axes.append(ElasticAxis(joint.name, drive, spring, rotor, lines))
     return elastic_axes
+
+
+def list_presliding_notes(robot_spec: Any, robot_axes: Iterable[ElasticAxis]) -> Iterator[str]:
+    """Yield a text for each motor whose presliding angle in the MJCF exceeds that in the FMU."""
+    for axis in robot_axes:
+        drive, inertia = axis.drive, axis.rotor_inertia / axis.drive.ratio**2
+        if drive.static_friction and bristles.is_integrator_stable(robot_spec.option):
+            angle = bristles.compute_presliding_angle(drive, inertia, robot_spec.option.timestep)
+            if angle > 1.01 * drive.presliding_angle:
+                yield (
+                    f"{axis.joint_name}: friction builds up over {angle:.3g} rad of the motor in the MJCF, "
+                    f"because its steps are long, and over {drive.presliding_angle:g} rad in the FMU"
+                )
+
+
+def set_default_time_step(robot_spec: Any, robot_path: str | Path, largest_stable_step: float) -> None:
+    """Set a step of 1, 2, 5, 10, ... for a robot whose file states none, if MuJoCo's default is too long.
+
+    A step in an included file is found unless it is MuJoCo's default.
+
+    largest_stable_step : of the robot with its drives [s]
+    """
+    if robot_spec.option.timestep != MUJOCO_DEFAULT_TIME_STEP or b"timestep" in Path(robot_path).read_bytes():
+        return
+    allowed = largest_stable_step / TIME_STEP_SAFETY_FACTOR
+    if allowed < MUJOCO_DEFAULT_TIME_STEP:
+        decade = 10.0 ** np.floor(np.log10(allowed))
+        digit = max(x for x in (1.0, 2.0, 5.0) if x * decade <= allowed)
+        robot_spec.option.timestep = float(f"{digit * decade:.1g}")
 
 
 def compute_mass_matrix(robot_model: Any, robot_pose: Array) -> Array:
@@ -268,7 +297,7 @@ def coordinate_unit(robot_model: Any, joint_name: str) -> str:
 def make_robot_pose(robot_model: Any, position_texts: Mapping[str, str]) -> Array:
     """Joint positions of the rigid robot: first keyframe or default pose, with given angles replaced.
 
-    position_texts : {joint: text of its position [rad or m]}
+    position_texts : {joint: text of its position [rad or m], or with a unit}
 
     Raises ValueError for an unknown joint, or a position that is not a number or outside the joint's range.
     """
@@ -284,17 +313,18 @@ def make_robot_pose(robot_model: Any, position_texts: Mapping[str, str]) -> Arra
     for name, text in position_texts.items():
         if name not in known:
             raise ValueError(f"--pose {name}: no joint of the robot; allowed are {', '.join(known)}")
+        unit = coordinate_unit(robot_model, name)
         try:
-            value = float(text)
-        except ValueError:
-            raise ValueError(f"--pose {name} = {text!r} is not a number") from None
+            value = parse_number("pose", text, unit, unit, lower_bound=None)
+        except ValueError as error:
+            raise ValueError(str(error).replace("--pose", f"--pose {name}", 1)) from None
         joint = robot_model.joint(name).id
         low, high = robot_model.jnt_range[joint] if robot_model.jnt_limited[joint] else (-np.inf, np.inf)
-        if not (np.isfinite(value) and low <= value <= high):
-            allowed = f"[{low:g}, {high:g}]" if robot_model.jnt_limited[joint] else "(-inf, inf)"
+        if not low <= value <= high:
+            is_in_degrees = unit == "rad" and text[-1].isdigit() and low <= np.deg2rad(value) <= high
             raise ValueError(
-                f"--pose {name} = {text} {coordinate_unit(robot_model, name)} is outside {allowed} "
-                f"{coordinate_unit(robot_model, name)}"
+                f"--pose {name} = {value:g} {unit} is outside [{low:g}, {high:g}] {unit}"
+                + (f"; an angle in degrees is {name}={text}deg" if is_in_degrees else "")
             )
         pose[known[name]] = value
     return pose

@@ -21,6 +21,8 @@ PAYLOAD_POINT_COUNT = 11
 """Number of payloads on the axis of the plot [1]."""
 FIGURE_SIZE = (9.0, 3.8)
 """Width and height of a figure [inch]."""
+RINGING_PANEL_HEIGHT = 1.4
+"""Height of the panel of one axis in the picture of the ringing [inch]."""
 MAX_CHANGE_OF_CONSTANT_FREQUENCY = 1e-6
 """Relative change [1] of a frequency over the poses below which it is drawn as constant: it is rounding."""
 MIN_WEIGHT_OVER_RATED_TORQUE = 1e-9
@@ -185,15 +187,12 @@ def draw_ringing(
     picture_path: Path, robot_axes: Sequence[ElasticAxis], ringing_results: Sequence[Ringing]
 ) -> None:
     """Plot the distance of the tip from its position at rest, after the stop of each motor."""
-    with plots.open_figure(picture_path, FIGURE_SIZE) as figure:
-        panel = figure.subplots()
-        for axis, result in zip(robot_axes, ringing_results, strict=True):
-            panel.plot(
-                result.times_after_stop,
-                1e3 * result.tip_distance,
-                label=f"stop of {axis.joint_name}",
-                linewidth=1.0,
-            )
-        panel.set(xlabel="time after the stop [s]", ylabel="distance of the tip from rest [mm]")
-        panel.set_ylim(0.0, None)
-        panel.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    height = RINGING_PANEL_HEIGHT * len(robot_axes) + 0.6
+    with plots.open_figure(picture_path, (FIGURE_SIZE[0], height)) as figure:
+        panels = figure.subplots(len(robot_axes), 1, sharex=True, squeeze=False).ravel()
+        for panel, axis, result in zip(panels, robot_axes, ringing_results, strict=True):
+            panel.plot(result.times_after_stop, 1e3 * result.tip_distance, color=plots.BLUE, linewidth=1.0)
+            panel.set_title(f"stop of {axis.joint_name}", fontsize=8)
+            panel.set_ylim(0.0, None)
+        panels[-1].set_xlabel("time after the stop [s]")
+        figure.supylabel("distance of the tip from rest [mm]", fontsize=10)

@@ -5,9 +5,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.optimize import brentq
 
 from jointfmu.quantity import Array
 
+from . import bristles
 from .elastic import ElasticAxis, compute_mass_matrix
 from .spring_fit import FittedSpring
 
@@ -145,21 +147,44 @@ def compute_ringing(
 def find_largest_stable_step(
     robot_model: "MjModel", robot_axes: Sequence[ElasticAxis], robot_pose: Array
 ) -> float:
-    """Largest stable time step [s] of MuJoCo's default integrator, 2 over the highest natural frequency.
+    """Largest time step h [s] at which the plain MJCF is stable with MuJoCo's default integrator (Euler).
 
-    This frequency is that of links and free motors at a pose, with the stiffness at the largest fit torques.
+    That is for links and free motors at a pose, with the stiffness at the largest fit torques. The vibrations
+    M x" + C x' + K x = 0 are stable if no eigenvalue of M^-1 (h^2 K + 2 h C) exceeds 4: a sufficient
+    condition for symmetric matrices and forces that are taken from the start of a step. C has the damping of
+    the drives and the largest damping of the motor friction. The latter depends on the step for which the
+    friction is written, which is h, or the step of `robot_model` if that is shorter.
     """
     indices = find_axis_dofs(robot_model, robot_axes)
-    rotors = np.zeros(robot_model.nv)
+    n, rotors = len(robot_axes), np.zeros(robot_model.nv)
     rotors[indices] = robot_model.dof_armature[indices]
-    mobility = np.linalg.inv(compute_mass_matrix(robot_model, robot_pose) - np.diag(rotors))[
-        np.ix_(indices, indices)
-    ]
-    mobility += np.diag([1.0 / axis.rotor_inertia for axis in robot_axes])
-    scale = np.sqrt(
-        [axis.fitted_spring.stiffness_at_torque(axis.fitted_spring.max_torque) for axis in robot_axes]
-    )
-    return float(2.0 / np.sqrt(np.linalg.eigvalsh(scale[:, None] * mobility * scale)[-1]))
+    link_mobility = np.linalg.inv(compute_mass_matrix(robot_model, robot_pose) - np.diag(rotors))
+    rotor_mobility = np.diag([1.0 / axis.rotor_inertia for axis in robot_axes])
+    root = np.zeros((2 * n, 2 * n))  # links, then rotors; all coordinates at the joints
+    root[:n, :n] = np.linalg.cholesky(link_mobility[np.ix_(indices, indices)])
+    root[n:, n:] = np.sqrt(rotor_mobility)
+    wind_up = np.hstack([np.eye(n), -np.eye(n)])
+    springs = [axis.fitted_spring.stiffness_at_torque(axis.fitted_spring.max_torque) for axis in robot_axes]
+    stiffness = wind_up.T @ np.diag(springs) @ wind_up
+    drive_damping = wind_up.T @ np.diag([axis.drive.output_damping for axis in robot_axes]) @ wind_up
+    has_bristles = bristles.is_integrator_stable(robot_model.opt)
+
+    def stability_margin(step: float) -> float:
+        """Largest eigenvalue of M^-1 (h^2 K + 2 h C) minus 4 [1] at a step h [s]."""
+        damping = drive_damping.copy()
+        for i, axis in enumerate(robot_axes, n):
+            ratio, friction = axis.drive.ratio, axis.drive.viscous_friction
+            if has_bristles and axis.drive.static_friction:
+                inertia = axis.rotor_inertia / ratio**2
+                friction = bristles.compute_max_damping(
+                    axis.drive, inertia, min(step, robot_model.opt.timestep)
+                )
+            damping[i, i] += ratio**2 * friction
+        matrix = root.T @ (step**2 * stiffness + 2.0 * step * damping) @ root
+        return float(np.linalg.eigvalsh(matrix)[-1] - 4.0)
+
+    undamped = 2.0 / np.sqrt(np.linalg.eigvalsh(root.T @ stiffness @ root)[-1])
+    return float(brentq(stability_margin, 1e-9 * undamped, 1.01 * undamped, rtol=1e-9))
 
 
 def compute_weight_deflection(

@@ -71,6 +71,13 @@ def find_body_frame(robot_model: "MjModel", body_index: int) -> Frame:
 def list_omitted_effects(robot_model: "MjModel") -> list[str]:
     """Effects of the robot file that the rigid-body dynamics do not include, as texts."""
     texts = []
+    if np.any(robot_model.jnt_limited):
+        texts.append("limits of joint angles (range)")
+    if np.any(robot_model.jnt_actfrclimited):
+        texts.append("limits of joint torques (actuatorfrcrange; effort of a URDF)")
+    if robot_model.nu:
+        names = ", ".join(robot_model.actuator(k).name or f"number {k + 1}" for k in range(robot_model.nu))
+        texts.append(f"actuators ({names}): the inputs are the torques or angles of the motors")
     if rubbing := [
         robot_model.joint(k).name
         for k in range(robot_model.njnt)

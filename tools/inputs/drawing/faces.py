@@ -68,7 +68,8 @@ FACE_OPTIONS = (
     Option("unit", "length unit of --surface files that state none: m, mm, um, nm", "UNIT"),
     Option(
         "spacing",
-        "spacing of the points of --surface files that state none, as in 5um; or two values, along x and y",
+        "spacing of the points of --surface files that state none, with its unit as in 5um; or two values, "
+        "for x and y",
         "LENGTH",
         is_list=True,
     ),

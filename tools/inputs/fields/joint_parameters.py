@@ -25,6 +25,8 @@ from .reduction import MAX_KEPT_NODES, FieldReduction, reduce_field
 
 FIELD_FORCE_TOLERANCE = 0.01
 """Largest relative difference between the force of a pressure field and the total preload [1]."""
+MAX_SCALED_FORCE_RATIO = 2.0
+"""Ratio [1] of field force and bolt force, or its inverse, up to which scaling the field is advised."""
 FIELD_MOMENT_OVER_GIVEN_MOMENT_RANGE = (0.5, 1.5)
 """Allowed range of the moment of the pressure over the given moment [1]; bolt forces carry the rest."""
 _REPLACED_PARAMETER_PREFIXES = ("pattern.", "plate.", "field.", "bodies.", "sides")
@@ -192,14 +194,31 @@ def _bolt_force_ratio(
     if not 0.0 < preload < np.inf:
         raise ValueError(f"preload = {preload:g} N is outside (0, inf): preload of each bolt")
     expected = preload * bolted_joint.n_bolts
-    if not abs(contact_field.normal_force / expected - 1.0) <= force_tolerance:
-        raise InputRefusal(
+    ratio = contact_field.normal_force / expected
+    if not abs(ratio - 1.0) <= force_tolerance:
+        text = (
             f"the force of {field_description} is {contact_field.normal_force:.6g} N, expected "
             f"{expected:.6g} N within {100.0 * force_tolerance:.3g} %: {bolted_joint.n_bolts:g} bolts of "
-            f"{preload:g} N; with a larger tolerance the field is scaled to the bolt force",
-            "force_tolerance",
+            f"{preload:g} N"
+        )
+        if not 1.0 / MAX_SCALED_FORCE_RATIO < ratio < MAX_SCALED_FORCE_RATIO:
+            advice = f"{_describe_force_ratio(ratio)}, the force of each bolt and the number of bolts"
+            raise InputRefusal(f"{text}; {advice}", "preload")
+        raise InputRefusal(
+            f"{text}; with a larger tolerance the field is scaled to the bolt force", "force_tolerance"
         )
     return expected / contact_field.normal_force
+
+
+def _describe_force_ratio(field_over_bolt_force: float) -> str:
+    """Advice to check units, with the factor [1] of field force over bolt force if it is a power of 1000."""
+    if not 0.0 < field_over_bolt_force < np.inf:
+        return "check the columns of pressure and area"
+    power = 3 * round(np.log10(field_over_bolt_force) / 3.0)
+    if not power or not 0.5 < field_over_bolt_force / 10.0**power < 2.0:
+        return "check the units of pressure and area"
+    word = "small" if power < 0 else "large"
+    return f"the field is a factor of about 1e{abs(power)} too {word}: check the units of pressure and area"
 
 
 def _check_same_nodes(contact_field: ContactPressureField, moment_field: ContactPressureField) -> None:

@@ -103,9 +103,16 @@ FIELD_COLUMN_UNITS: Mapping[str, UnitSizes] = {
 """Columns of a CSV file with a nodal result: {name: {allowed unit: its size in SI units}}."""
 
 
+FIELD_COLUMN_ALIASES = {
+    "area": ("a", "fläche", "flaeche", "carea", "cnarea"),
+    "pressure": ("p", "druck", "pressung", "kontaktdruck", "flächenpressung", "cpress", "pres"),
+}
+"""{column: accepted synonyms, in lower case}."""
+
+
 def read_field_csv(csv_path: Path) -> NodalResult:
     """Read a nodal result from a CSV file; ValueError with file, line and column if it cannot be read."""
-    table = columns.read_columns(csv_path, FIELD_COLUMN_UNITS, 1)
+    table = columns.read_columns(csv_path, FIELD_COLUMN_UNITS, 1, FIELD_COLUMN_ALIASES)
     quantities = {name: table.require_column(name, FIELD_COLUMN_UNITS) for name in FIELD_COLUMN_UNITS}
     return NodalResult(
         result_path=csv_path,

@@ -149,8 +149,8 @@ def _check_no_open_nodes(contact_surface: ContactSurface) -> None:
     open_nodes = np.flatnonzero(contact_surface.nodal_pressure == 0.0)
     if open_nodes.size:
         raise InputRefusal(
-            f"{contact_surface.describe_node(int(open_nodes[0]))}: has no pressure, as {open_nodes.size} of "
-            f"{contact_surface.nodal_area.size} nodes in the contact plane; state keep (they just touch) or "
-            "drop (they never touch)",
+            f"{contact_surface.describe_node(int(open_nodes[0]))}: has no pressure; {open_nodes.size} of the "
+            f"{contact_surface.nodal_area.size} nodes in the contact plane have none. State keep (at these "
+            "nodes the sides touch, with a gap of zero) or drop (they never touch)",
             "open",
         )

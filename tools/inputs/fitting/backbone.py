@@ -169,13 +169,11 @@ def _separate_hysteresis(
 
     lengths = np.gradient(grid)
     lengths[[0, -1]] = 0.5 * (grid[1] - grid[0])
-    backlash = (
-        sum_weighted_gaps(-2.0 * _hat_functions(np.zeros(1), grid).toarray()[0])
-        if min_torque <= 0.0 <= max_torque
-        else None
-    )
     drift = (float(values[-1]), float(np.sqrt(covariance[-1, -1]))) if has_drift else None
     driftless = phi - (drift[0] * time if drift else 0.0)
+    backlash = (
+        _fit_backlash(T, driftless, direction, grid[1] - grid[0]) if min_torque <= 0.0 <= max_torque else None
+    )
     position = (T - 0.5 * (min_torque + max_torque)) / (
         0.5 * (max_torque - min_torque)
     )  # in the range of the torque, from -1 to 1
@@ -197,6 +195,29 @@ def _fit_friction_torque(torque: Array, angle: Array, branch_direction: Array) -
     grid = np.linspace(np.min(angle), np.max(angle), knots)
     design = np.column_stack([_hat_functions(angle, grid).toarray(), branch_direction])
     return float(np.linalg.lstsq(design, torque)[0][-1])
+
+
+def _fit_backlash(
+    torque: Array, angle: Array, branch_direction: Array, torque_window: float
+) -> tuple[float, float] | None:
+    """Fit the angle [rad] between the branches at zero torque, and its standard deviation.
+
+    Both branches are parabolas near zero torque: the gap between the curves, piecewise linear over the whole
+    range, would be a mean over a range in which the stiffness changes.
+
+    branch_direction : +1 (rising) or -1 (falling) for each sample (n)
+    torque_window    : length [N.m] of the range around zero torque
+    """
+    near = np.abs(torque) <= 0.5 * torque_window
+    T, s = torque[near] / torque_window, branch_direction[near]
+    design = np.column_stack([np.ones_like(T), T, T**2, s, s * T, s * T**2])
+    if T.size <= design.shape[1] or np.linalg.matrix_rank(design) < design.shape[1]:
+        return None
+    values = np.linalg.lstsq(design, angle[near])[0]
+    residual = angle[near] - design @ values
+    variance = float(residual @ residual) / (T.size - values.size)
+    deviation = float(np.sqrt(variance * np.linalg.inv(design.T @ design)[3, 3]))
+    return -2.0 * float(values[3]), 2.0 * deviation
 
 
 def _hat_functions(torques: Array, knots: Array) -> scipy.sparse.csr_matrix:

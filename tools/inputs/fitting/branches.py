@@ -49,6 +49,8 @@ MIN_STIFFNESS_RISE_OVER_DEVIATION = 8.0
 """Rise of a branch's stiffness over its standard deviation [1], from which a joint bears after slip."""
 MIN_RISING_BRANCH_SAMPLES = 5
 """Number of samples on the rising part of a branch from which its stiffness counts as resolved."""
+MIN_STIFFNESS_DEVIATIONS = 4.0
+"""Distance of the lower bound of a stiffness from its estimate, in standard deviations [1]."""
 _AREA_INTEGRATION_POINTS = 200
 """Number of points of the grid for the area between two branches [1]."""
 _MAX_REST_POSITION_ITERATIONS, _REST_DIFFERENCE_STEP_OVER_MOTION_RANGE = 6, 1e-4
@@ -99,43 +101,61 @@ class MeasuredLoops:
 
     @property
     def rest_stiffness(self) -> float:
-        """Approximate stiffness [N/m or N.m/rad] after a reversal: the largest initial slope of the branches.
+        """Approximate stiffness [N/m or N.m/rad] after a reversal: initial slope of the best branch.
 
-        If `is_stiffness_resolved` is false, the result is a lower bound.
+        If `is_stiffness_resolved` is false, the result is a secant, which is rather too small.
         """
-        slopes = self._initial_slopes(is_stiffness_resolved=True) or self._initial_slopes(
-            is_stiffness_resolved=False
-        )
-        return max(slopes)
+        return self._best_initial_slope.stiffness
+
+    @property
+    def min_rest_stiffness(self) -> float:
+        """Lower bound [N/m or N.m/rad] of the stiffness after a reversal, with a margin for the noise."""
+        return self._best_initial_slope.min_stiffness
 
     @property
     def is_stiffness_resolved(self) -> bool:
         """Whether a branch has enough samples between its turning point and slip to show its stiffness."""
-        return bool(self._initial_slopes(is_stiffness_resolved=True))
+        return self._best_initial_slope.is_resolved
 
-    def _initial_slopes(self, is_stiffness_resolved: bool) -> list[float]:
-        """Stiffness [N/m or N.m/rad] right after the turning point, for each branch of a group.
+    @property
+    def _best_initial_slope(self) -> "InitialSlope":
+        """Initial slope with the largest lower bound, of the resolved branches if there are any."""
+        slopes = [self._initial_slope(k) for k in range(self.branch_start_motion.size)]
+        return max(slopes, key=lambda slope: (slope.is_resolved, slope.min_stiffness))
 
-        is_stiffness_resolved : True: branches with enough samples before slip; False: all other branches,
-            with lower bounds of their stiffness
+    def _initial_slope(self, branch_number: int) -> "InitialSlope":
+        """Stiffness right after the turning point of a branch.
 
-        Only the rising part of a branch is used: a slipped part would lower the slope.
+        Only the rising part of the branch is used: a slipped part would lower the slope.
         """
-        slopes = []
-        for k in range(self.branch_start_motion.size):
-            distance, change = self.branch_curve(k)
-            rising = int(np.argmax(change >= RISING_OVER_BRANCH_FORCE_CHANGE * np.max(change)))
-            if (rising >= MIN_RISING_BRANCH_SAMPLES) is not is_stiffness_resolved:
-                continue
-            if is_stiffness_resolved:
-                slopes.append(float(np.polyfit(distance[:rising], change[:rising], 2)[1]))
-            else:
-                slopes.append(
-                    float(
-                        change[rising] / (distance[rising] + self.branch_start_motion_standard_deviation[k])
-                    )
-                )
-        return slopes
+        distance, change = self.branch_curve(branch_number)
+        rising = int(np.argmax(change >= RISING_OVER_BRANCH_FORCE_CHANGE * np.max(change)))
+        if rising >= MIN_RISING_BRANCH_SAMPLES:
+            coefficients, covariance = np.polyfit(distance[:rising], change[:rising], 2, cov=True)
+            slope, deviation = float(coefficients[1]), float(np.sqrt(covariance[1, 1]))
+            return InitialSlope(branch_number, rising, slope, slope - MIN_STIFFNESS_DEVIATIONS * deviation)
+        deviation = float(self.branch_start_motion_standard_deviation[branch_number])
+        secant, min_secant = (
+            float(change[rising] / (distance[rising] + factor * deviation))
+            for factor in (1.0, MIN_STIFFNESS_DEVIATIONS)
+        )
+        return InitialSlope(branch_number, rising, secant, min_secant)
+
+    def rest_stiffness_over_law(self, hysteresis_law: HysteresisLaw, residual_scale: Array) -> float:
+        """Stiffness after a reversal over that of a law [1], both by the initial slope at the same samples.
+
+        NaN if the samples do not resolve the stiffness.
+        """
+        best = self._best_initial_slope
+        if not best.is_resolved:
+            return np.nan
+        law = hysteresis_law.with_rest_position(self.rest_position(hysteresis_law, residual_scale))
+        _, _, residual = self.fit_turning_points(law, residual_scale)
+        distance, measured = self.branch_curve(best.branch_number)
+        _, computed = replace(self, joint_force=self.joint_force - residual).branch_curve(best.branch_number)
+        rising = slice(best.rising_samples)
+        slopes = [np.polyfit(distance[rising], change[rising], 2)[1] for change in (measured, computed)]
+        return float(slopes[0] / slopes[1])
 
     @property
     def slip_force(self) -> float | None:
@@ -363,6 +383,26 @@ class MeasuredLoops:
     def _branch_means(self, sample_values: Array) -> Array:
         """Mean (branches) of values (n) over each branch."""
         return np.asarray(self._branch_sums(sample_values) / np.bincount(self.branch_of_sample))
+
+
+@dataclass(frozen=True, slots=True)
+class InitialSlope:
+    """Stiffness right after the turning point of a branch.
+
+    rising_samples : number of samples before the branch slips
+    stiffness      : [N/m or N.m/rad]; a secant if the slope is not resolved
+    min_stiffness  : lower bound of `stiffness`, MIN_STIFFNESS_DEVIATIONS standard deviations below
+    """
+
+    branch_number: int
+    rising_samples: int
+    stiffness: float
+    min_stiffness: float
+
+    @property
+    def is_resolved(self) -> bool:
+        """Whether the samples before slip suffice for the slope."""
+        return self.rising_samples >= MIN_RISING_BRANCH_SAMPLES
 
 
 @dataclass(frozen=True, slots=True)

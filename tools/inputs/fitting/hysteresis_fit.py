@@ -35,6 +35,9 @@ FIRST_FIT_TOLERANCE, SECOND_FIT_TOLERANCE = 1e-3, 1e-6
 """Relative change of cost or parameters at which the first and the second fit end [1]."""
 FIRST_FIT_RELATIVE_NOISE = 0.01
 """Noise assumed in the first fit, over the size of the data [1]; it only sets the regularisation."""
+MAX_LOOP_AREA_MISFIT, MAX_LOG_REST_STIFFNESS_MISFIT = 0.05, 0.2
+"""Relative error of the loop area, and error of the logarithm of the stiffness after a reversal [1], from
+which a note is printed."""
 MIN_OVER_MAX_NOISE = 1e-9
 """Lower limit of the noise of a group, over the largest noise of all groups [1]; for data without noise."""
 
@@ -240,11 +243,7 @@ def summarize_fit(
     data, (_, unit) = measurement.measured_data, measurement.column_names.si_units
     result = {
         "points": (float(data.residual_scale.size), "1", "data points used"),
-        "amplitude": (
-            measurement.largest_amplitude,
-            unit,
-            f"largest {measurement.column_names.motion_column}",
-        ),
+        "amplitude": (measurement.largest_amplitude, unit, measurement.describe_amplitude),
     }
     if isinstance(data, MeasuredLoops) and hysteresis_law.elastic_spring:
         result["offset"] = (
@@ -262,21 +261,50 @@ def summarize_fit(
         )
     _, loss = hysteresis_law.equivalent_spring(np.array([measurement.largest_amplitude]))
     result["loss_factor"] = (float(loss[0]), "1", "of the fitted law at the largest amplitude")
-    result["noise"] = (
-        solution.noise,
-        "1",
-        "standard deviation of a residual, relative to the size of its group",
-    )
+    group = data.noise_group_of_residual == 0 if isinstance(data, FreeVibration) else slice(None)
+    misfit = solution.residuals[: residual_scale.size] * residual_scale
+    if isinstance(data, MeasuredLoops):
+        misfit = misfit / data.residual_scale
+    result["noise"] = (float(np.sqrt(np.mean(misfit[group] ** 2))), "1", _NOISE_TEXTS[type(data)])
     return result
 
 
-def list_misfit_notes(measurement: Measurement, solution: FitSolution) -> list[str]:
-    """Notes for the user if the residuals show that the law misses the data systematically; else empty."""
-    if measurement.measurement_kind == "response":
+_NOISE_TEXTS = {
+    MeasuredLoops: "standard deviation about the fitted law, over the range of the force or torque",
+    FreeVibration: "relative standard deviation of the frequencies about the fitted law",
+    ForcedResponse: "relative standard deviation of the amplitudes about the fitted law",
+}
+"""Meaning of the printed noise, by the class of the data."""
+
+
+def list_misfit_notes(
+    measurement: Measurement, solution: FitSolution, hysteresis_law: HysteresisLaw, residual_scale: Array
+) -> list[str]:
+    """Notes for the user if the law misses the data systematically; else empty.
+
+    residual_scale : noise (n) of the data
+    """
+    data = measurement.measured_data
+    if isinstance(data, ForcedResponse):
         return []
-    residuals = solution.residuals[: measurement.measured_data.noise_group_of_residual.size]
-    same_group = np.diff(measurement.measured_data.noise_group_of_residual) == 0
-    return note_residual_correlation(residuals, "data", same_group)
+    residuals = solution.residuals[: data.noise_group_of_residual.size]
+    same_group = np.diff(data.noise_group_of_residual) == 0
+    notes = note_residual_correlation(residuals, "data", same_group)
+    if not isinstance(data, MeasuredLoops):
+        return notes
+    if data.widest_loops:
+        area, size = max(data.widest_loops, key=lambda loop: loop[1])
+        ratio = float(hysteresis_law.loop_area(np.array([0.5 * size]))[0]) / area
+        if abs(ratio - 1.0) > MAX_LOOP_AREA_MISFIT:
+            notes.append(f"the fitted law has {ratio:.3g} times the measured area of the widest loop")
+    unit = "/".join(measurement.column_names.si_units)
+    ratio = data.rest_stiffness_over_law(hysteresis_law, residual_scale)
+    if abs(np.log(ratio)) > MAX_LOG_REST_STIFFNESS_MISFIT:
+        notes.append(
+            f"after a reversal, the fitted law has {1.0 / ratio:.3g} times the stiffness of the data, "
+            f"{data.rest_stiffness:.4g} {unit}: the law cannot follow the shape of the loops"
+        )
+    return notes
 
 
 _PLOTTED_CURVE_POINTS = 120

@@ -29,6 +29,8 @@ COLUMN_SYNONYMS = {
     "time": ("t", "zeit"),
     "frequency": ("freq", "frequenz", "f"),
     "damping": ("zeta", "dämpfung", "dämpfungsgrad"),
+    "preload": ("vorspannkraft",),
+    "stiffness": ("steifigkeit",),
 }
 """{column: accepted synonyms, in lower case}."""
 WRONG_UNIT_MEASURED_OVER_START_STIFFNESS = 50.0
@@ -76,6 +78,7 @@ class MeasurementColumns:
         stated_units: Mapping[str, str],
         start_file: ParameterFile,
         is_force_plausible: bool = False,
+        remedy: str = "start from the parameter file of a joint of similar stiffness",
     ) -> None:
         """Check that the measured stiffness is near the stiffness of the start values.
 
@@ -84,6 +87,7 @@ class MeasurementColumns:
         start_file                    : parameter file with the start values
         is_force_plausible            : whether the force at gross slip shows that the unit of the force is
                                         right
+        remedy                        : what to do if the units are right
 
         Raises InputRefusal, with a likely unit error, if the ratio or its inverse reaches
         WRONG_UNIT_MEASURED_OVER_START_STIFFNESS.
@@ -101,8 +105,7 @@ class MeasurementColumns:
             f"{measurement_path}: the measured stiffness is {measured_over_start_stiffness:.3g} times that "
             f"of the start values, {start_file.name}; allowed are "
             f"{1.0 / WRONG_UNIT_MEASURED_OVER_START_STIFFNESS:g} to "
-            f"{WRONG_UNIT_MEASURED_OVER_START_STIFFNESS:g}: {unit_error}; if the units are right, start from "
-            "the parameter file of a joint of similar stiffness",
+            f"{WRONG_UNIT_MEASURED_OVER_START_STIFFNESS:g}: {unit_error}; if the units are right, {remedy}",
             "params",
         )
 
@@ -234,6 +237,16 @@ class Measurement:
         return float(
             0.5 * np.ptp(self.joint_motion) if self.measurement_kind == "loops" else np.max(self.joint_motion)
         )
+
+    @property
+    def describe_amplitude(self) -> str:
+        """Meaning of `largest_amplitude`, as text."""
+        name = self.column_names.motion_column
+        if self.measurement_kind == "loops":
+            return f"half the range of the {name}"
+        if self.measurement_kind == "decay":
+            return f"largest mean {name} amplitude of a window of the decay"
+        return f"largest {name} amplitude"
 
     def rest_stiffness(self, inertia: float | None) -> float:
         """Approximate stiffness [N/m or N.m/rad] at small motions.

@@ -15,10 +15,12 @@ from numpy.typing import NDArray
 
 from jointfmu.contact.roughness import MAX_ROUGHNESS_HEIGHT
 from jointfmu.files.timestamp import get_build_time
+from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array, Interval, flatten_fields
 
 from ...common import plots
+from ...common.names import find_similar_names
 from .least_squares import FitSolution, Unknown
 
 if TYPE_CHECKING:
@@ -31,7 +33,8 @@ MAX_DEVIATION_OVER_INTERVAL = 0.1
 """Standard deviation over the length of the parameter's interval, both in logarithms [1], up to which a
 parameter counts as determined."""
 MIN_OVER_MAX_EXPONENT = 0.01
-"""Exponent over the largest exponent of a combination [1], below which the parameter is not named in it."""
+"""Exponent over the largest exponent of a combination [1], below which the parameter is not named in it,
+unless its uncertainty alone would exceed that of the combination."""
 MIN_OVER_MAX_SINGULAR_VALUE = 1e-5
 """Singular value over the largest [1], below which it counts as zero: accuracy of the finite differences."""
 
@@ -77,19 +80,23 @@ def max_deviation_of_determined_parameter(unknown: Unknown) -> float:
 def find_parameter_combinations(solution: FitSolution) -> list[ParameterCombination]:
     """Statistically independent combinations of the parameters of a solution, best determined first."""
     limits = np.array([max_deviation_of_determined_parameter(u) for u in solution.unknowns])
+    deviations = np.array([*solution.relative_deviations.values()])
     _, s, rows = np.linalg.svd(solution.jacobian * limits, full_matrices=False)
     independent = []
     for value, row in zip(s, rows, strict=True):
         powers = row / limits  # ln of the combination is row . (ln x / limits)
         largest = powers[np.argmax(np.abs(row))]
-        significant = np.abs(row) >= MIN_OVER_MAX_EXPONENT * np.max(np.abs(row))
+        has_no_effect = value <= MIN_OVER_MAX_SINGULAR_VALUE * s[0]
+        deviation = np.inf if has_no_effect else solution.noise / value
+        share = np.abs(row) / np.max(np.abs(row))
+        significant = (share >= MIN_OVER_MAX_EXPONENT) | (
+            (share >= MIN_OVER_MAX_SINGULAR_VALUE) & (np.abs(powers) * deviations >= deviation)
+        )
         exponents = {
             u.parameter_name: float(p / largest)
             for u, p, is_named in zip(solution.unknowns, powers, significant, strict=True)
             if is_named
         }
-        has_no_effect = value <= MIN_OVER_MAX_SINGULAR_VALUE * s[0]
-        deviation = np.inf if has_no_effect else solution.noise / value
         independent.append(
             ParameterCombination(
                 exponents,
@@ -225,6 +232,8 @@ class FitResult:
             and count == len(names)
             and not any(c.is_determined for c in find_parameter_combinations(self.solution))
         ):
+            if count == 1:
+                return f"the data do not determine {names[0]}; {_REMEDY_TEXT}"
             return f"the data determine none of {', '.join(names)}, nor a combination of them; {_REMEDY_TEXT}"
         if "loop_area_law" in self.facts:
             measured, law = self.facts["loop_area"][0], self.facts["loop_area_law"][0]
@@ -330,11 +339,15 @@ def _finite_or_none(number: float) -> float | None:
 
 
 def make_fit_unknowns(
-    start_file: ParameterFile, fitted_names: Sequence[str], bounds_by_name: Mapping[str, tuple[float, float]]
+    start_file: ParameterFile,
+    fitted_names: Sequence[str],
+    bounds_by_name: Mapping[str, tuple[float, float]],
+    other_names: Sequence[str] = (),
 ) -> list[Unknown]:
     """Make the unknowns of a fit: named parameters, with values of `start_file` and declared intervals.
 
     bounds_by_name : {name: (low, high)} that narrow the declared intervals
+    other_names    : unknowns that are no parameters of the joint, which the user may name too
 
     Raises ValueError for a name that the joint lacks, that is not a number, or that is given twice.
     """
@@ -342,13 +355,27 @@ def make_fit_unknowns(
     declared = {n: f for n, f in flatten_fields(type(start_file.values)) if isinstance(values.get(n), float)}
     for name in fitted_names:
         if name not in declared:
-            raise ValueError(f"{name!r} is not a parameter to fit; allowed are {', '.join(declared)}")
+            raise ValueError(_describe_unknown_name(name, start_file, [*declared, *other_names]))
         if fitted_names.count(name) > 1:
             raise ValueError(f"{name!r} is given twice; state it once")
         meta = declared[name].metadata
         interval = meta["interval"].intersection(Interval(*bounds_by_name.get(name, ())))
         result.append(Unknown(name, meta["unit"], float(values[name]), interval.low, interval.high))
     return result
+
+
+def _describe_unknown_name(unknown_name: str, start_file: ParameterFile, allowed_names: Sequence[str]) -> str:
+    """Describe a name that cannot be fitted, as error message: law that has it, or the nearest name."""
+    laws = KINDS[start_file.joint].laws
+    other = [law for law, cls in laws.items() if unknown_name in dict(flatten_fields(cls))]
+    if other and start_file.law not in other:
+        return (
+            f"{unknown_name!r} is a parameter of the law {' and '.join(other)}, but {start_file.name} has "
+            f"the law {start_file.law}; allowed are {', '.join(allowed_names)}"
+        )
+    similar = find_similar_names(unknown_name, allowed_names, 1)
+    hint = f" (did you mean {similar[0]}?)" if similar else ""
+    return f"{unknown_name!r} is not a parameter to fit{hint}; allowed are {', '.join(allowed_names)}"
 
 
 def make_predictor(
@@ -367,19 +394,23 @@ def build_fitted_file(
     value_origin: str,
     data_file_name: str,
     measured_range_text: str,
+    undetermined_names: Sequence[str] = (),
 ) -> ParameterFile:
     """Copy of a parameter file with fitted values; their source states data, range and date.
 
     data_file_name, measured_range_text : data file and range of the data, as text
     value_origin               : kind of the source
+    undetermined_names         : parameters that the data do not determine: their kind is "estimate"
 
     The date is today, or SOURCE_DATE_EPOCH if that environment variable is set (reproducible files).
 
     Raises ValueError if SOURCE_DATE_EPOCH is not a number of seconds.
     """
     today = get_build_time().date().isoformat()
-    file = start_file.with_values(
-        parameter_values, value_origin, f"fitted to {data_file_name}, {today}, {measured_range_text}"
+    source = f"fitted to {data_file_name}, {today}, {measured_range_text}"
+    undetermined = {name: parameter_values[name] for name in undetermined_names if name in parameter_values}
+    file = start_file.with_values(parameter_values, value_origin, source).with_values(
+        undetermined, "estimate", f"{source}; not determined: other values fit as well"
     )
     return replace(file, name=f"fitted to {data_file_name}")
 

@@ -20,6 +20,7 @@ class FitProcedure:
 
     procedure_name        : name of the procedure, with hyphens
     procedure_description : which parameters, which joint
+    default_start_text    : parameters to start from if the user states no file, as text
     takes_file            : whether the data are a measurement file
     takes_several_files   : whether `run_fit` takes a list of paths instead of one path
     identifying_column    : a column that all files of this procedure have; files of procedures with the same
@@ -33,6 +34,7 @@ class FitProcedure:
 
     procedure_name: str
     procedure_description: str
+    default_start_text: str
     takes_file: bool
     takes_several_files: bool = False
     identifying_column: str = ""

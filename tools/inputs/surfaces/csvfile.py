@@ -193,7 +193,7 @@ def read_number_table(scan_path: Path, header_lines: int = 0) -> Array:
     values: list[Array] = []
     for i, line in ((i, line.partition("#")[0]) for i, line in read_numbered_lines(scan_path)[header_lines:]):
         row = split_table_line(line, delimiter) if delimiter else line.split()
-        check_cell_count(scan_path, i, row, values[0].size if values else len(row))
+        check_cell_count(scan_path, i, row, values[0].size if values else len(row), delimiter)
         values.append(_parse_numbers(scan_path, i, row))
     return np.array(values)
 

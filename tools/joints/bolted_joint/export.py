@@ -287,7 +287,7 @@ def tabulate_normal_force(
 class TightenedState:
     """Tightened state of a bolted joint: preload of each bolt, bending moment, and temperature."""
 
-    preload: float = quantity_field("N", "the preload of each bolt")
+    preload: float = quantity_field("N", "the force of each bolt at tightening")
     moment: float = quantity_field("N.m", "the bending moment", default=0.0)
     temperature: float = quantity_field(
         "K", "the temperature of bolts and members", default=TIGHTENING_TEMPERATURE

@@ -46,7 +46,9 @@ class PlaneLayout:
             place = pressure_distribution(pattern).position
             known = bodies and bodies.outline
             extent = np.reshape(known, (2, 2)) if known else np.stack([place.min(axis=0), place.max(axis=0)])
-            bolts = np.column_stack([bodies.bolt_x, bodies.bolt_y]) if bodies else np.zeros((0, 2))
+            bolts = np.column_stack(
+                [bodies.bolt_x, bodies.bolt_y] if bodies else [pattern.each_bolt_x, pattern.each_bolt_y]
+            )
             hole = bodies.hole_diameter if bodies else 0.0
             return cls(bolts, (extent,) if known else (), extent, hole, head)
         if isinstance(pattern, BoltedPlate):

@@ -59,9 +59,11 @@ def make_plan_and_section_figure(load_history: LoadHistory) -> Figure:
     if not PlaneLayout.from_joint_parameters(joint).contact_outline:
         text += "The outline is not in the file. "
     text += (
-        "The numbers of the bolts are those of the FMU's F_bolt. "
-        if len(bolts)
-        else "The file has no bolt positions. "
+        "The file has no bolt positions. "
+        if not len(bolts)
+        else "The numbers of the bolts are those of the FMU's F_bolt. "
+        if joint.has_elastic_members
+        else ""
     )
     text += (
         "Hatched surfaces move rigidly with the connected bodies; the section is schematic."

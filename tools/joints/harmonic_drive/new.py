@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from jointfmu.joints.harmonic_drive.friction import friction_limits, viscous_torque
-from jointfmu.quantity.units import CELSIUS_ZERO_IN_KELVIN
+from jointfmu.quantity.units import CELSIUS_ZERO_IN_KELVIN, unit_size
 
 from ...common.options import Option, format_option_flag
 from ...inputs.catalogue import SourcedNumber
@@ -288,7 +288,10 @@ def _make_joint_with_catalogue_law(
     if printed_angle:
         computed_angle, unit, text = facts["lost_motion"]
         relation = "below" if computed_angle < printed_angle.si_value else "above"
-        text += f"; {relation} {printed_angle.si_value:.4g} rad: {_source_without_brackets(printed_angle)}"
+        limit = (
+            f"{printed_angle.si_value:.4g} rad ({printed_angle.si_value / unit_size('arcmin'):.4g} arcmin)"
+        )
+        text += f"; {relation} {limit}: {_source_without_brackets(printed_angle)}"
         facts["lost_motion"] = (computed_angle, unit, text)
     if friction_numbers:
         facts["efficiency"] = (compute_rated_efficiency(file.values), "1", "at rated torque and 2000 rev/min")
@@ -365,32 +368,43 @@ def _catalogue_row(sourced_numbers: Mapping[str, SourcedNumber]) -> "CatalogueRo
     )
 
 
-FRICTION_OPTIONS = (
-    Option(
-        "starting_torque",
-        "starting torque at the input (of a harmonic drive: the wave generator) without load [N.m] "
-        "(default: that of a drive of the catalogue, else no friction)",
-        "T",
-    ),
-    Option(
-        "running_torque",
-        "torque at the input without load, at 2000 rev/min [N.m] (default: equal to --starting-torque)",
-        "T",
-    ),
-    Option(
-        "back_driving_torque",
-        "torque at the output that turns the drive if no motor holds the input [N.m]",
-        "T",
-    ),
-    Option("efficiency", "efficiency at rated torque and 2000 rev/min [1], as in 0.7 or 70%", "E"),
-    Option(
-        "motor_drag",
-        "dry friction of bearings and seals of the motor, added to that of the drive [N.m] (default: none)",
-        "T",
-    ),
-    Option("temperature", "start temperature of the lubricant [degC], or as in 293K (default: 20)", "T"),
-)
-"""Options of friction and temperature, of all drives."""
+def make_friction_options(first_default: str = "") -> tuple[Option, ...]:
+    """Options of `jointfmu new` for the friction of a drive.
+
+    first_default : text on the source of the default value, if it is not the value without friction
+    """
+    return (
+        Option(
+            "starting_torque",
+            f"starting torque at the input without load [N.m] (default: {first_default}no friction)",
+            "T",
+        ),
+        Option(
+            "running_torque",
+            f"torque at the input without load, at 2000 rev/min [N.m] (default: {first_default}equal to "
+            "--starting-torque)",
+            "T",
+        ),
+        Option(
+            "back_driving_torque",
+            "torque at the output that turns the drive if no motor holds the input [N.m] (default: "
+            f"{first_default}the friction under load that follows from --efficiency)",
+            "T",
+        ),
+        Option(
+            "efficiency",
+            f"efficiency at rated torque and 2000 rev/min [1], as in 0.7 or 70% (default: {first_default}the "
+            "friction under load that follows from --back-driving-torque, if stated)",
+            "E",
+        ),
+        Option(
+            "motor_drag",
+            "dry friction of bearings and seals of the motor, added to that of the drive [N.m] (default: "
+            "none)",
+            "T",
+        ),
+        Option("temperature", "start temperature of the lubricant [degC], or as in 293K (default: 20)", "T"),
+    )
 
 
 NEW_JOINT_COMMAND = NewJointCommand(
@@ -400,8 +414,9 @@ NEW_JOINT_COMMAND = NewJointCommand(
         Option("catalogue", "name of the drive, as in CSG-17-100 (list: jointfmu catalogue)", "NAME"),
         Option(
             "ratio",
-            "speed ratio [1]: positive, as catalogues print it; or negative, input over output with its "
-            "sign; with --catalogue: selects the drive with this ratio",
+            "speed ratio [1]: positive as in catalogues, and --fixed decides its sign; or negative, input "
+            "speed over output speed; with --catalogue: selects the drive with this ratio (default: that of "
+            "--catalogue)",
             "R",
         ),
         Option(
@@ -416,8 +431,9 @@ NEW_JOINT_COMMAND = NewJointCommand(
         ),
         Option(
             "stiffness_unit",
-            "unit of values of K1, K2, K3 that you state without one: kgf.m/arcmin, or with the factor of "
-            "the column heading '1e4 N.m/rad' (default: N.m/rad)",
+            "unit of --K1, --K2, --K3 if you state the number alone, as in kgf.m/arcmin, or with the factor "
+            "of the column heading, as in '1e4 N.m/rad' (default: N.m/rad); a number may have its own unit, "
+            "as in --K1 2.9N.m/arcmin",
             "UNIT",
         ),
         Option(
@@ -431,8 +447,13 @@ NEW_JOINT_COMMAND = NewJointCommand(
             "hysteresis)",
             "H",
         ),
-        *FRICTION_OPTIONS,
-        Option("source", "publication of the numbers, for the parameter file", "TEXT"),
+        *make_friction_options("from --catalogue, else "),
+        Option(
+            "source",
+            "publication of the numbers, for the parameter file (default: the drive of --catalogue, else "
+            "'catalogue')",
+            "TEXT",
+        ),
         Option(
             "corner",
             "half-width of the rounded corners of the curve at T1 and T2, relative to the wind-up there "

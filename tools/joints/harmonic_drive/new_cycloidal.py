@@ -24,9 +24,9 @@ from .efficiency import compute_hysteresis_loss, compute_lost_motion
 from .friction import FRICTION_COLUMNS
 from .new import (
     DAMPING_OVER_STIFFNESS,
-    FRICTION_OPTIONS,
     check_stated_friction,
     compute_wind_up_results,
+    make_friction_options,
     read_friction_parameters,
     set_lubricant_temperature,
 )
@@ -187,8 +187,8 @@ NEW_CYCLOIDAL_DRIVE_COMMAND = NewJointCommand(
         ),
         Option(
             "lost_motion",
-            "lost motion: angle between -3 % and +3 % of rated torque, midway in the hysteresis loop "
-            "[arcmin] (default: only the elastic wind-up)",
+            "lost motion [arcmin]: change of the output angle from -3 % to +3 % of the rated torque, on the "
+            "midline of the hysteresis loop (default: only the elastic wind-up)",
             "A",
         ),
         Option(
@@ -203,8 +203,8 @@ NEW_CYCLOIDAL_DRIVE_COMMAND = NewJointCommand(
             "rated torque)",
             "T",
         ),
-        *FRICTION_OPTIONS,
-        Option("source", "publication of the numbers, for the parameter file", "TEXT"),
+        *make_friction_options(),
+        Option("source", "publication of the numbers, for the parameter file (default: 'stated')", "TEXT"),
     ),
     make_joint=_make_joint,
 )

@@ -72,6 +72,11 @@ def _format_value(si_value: float, si_unit: str) -> str:
     return f"{float(text):.6g} {display_unit}"
 
 
+_SETTLED_STIFFNESS_RELATIVE_CHANGE, _MAX_SETTLED_OVER_LARGEST_LOAD = 0.01, 0.8
+"""Relative change [1] below which a stiffness counts as settled, and load from which it is settled over the
+largest load [1], up to which the text states this load."""
+
+
 def _describe_stiffness(load_history: LoadHistory) -> str:
     """Describe in a sentence how the stiffness changes along the load ramp; empty if no panel has one."""
     units = {v.name: v.unit for v in (*load_history.model.inputs, *load_history.model.outputs)}
@@ -93,6 +98,12 @@ def _describe_stiffness(load_history: LoadHistory) -> str:
     verb = "rises" if last > first else "falls"
     times = f", by a factor of {max(first, last) / min(first, last):.3g}" if min(first, last) > 0.0 else ""
     begin = f"{over} = {_format_value(float(columns[over][0]), units[over])}"
+    loads, changing = columns[over], np.abs(columns[name] - last) > _SETTLED_STIFFNESS_RELATIVE_CHANGE * last
+    settled = float(loads[np.flatnonzero(changing)[-1] + 1])
+    if abs(settled) < _MAX_SETTLED_OVER_LARGEST_LOAD * abs(loads[-1]):
+        start_of_plateau = f"{over} = {_format_value(settled, units[over])}{times}"
+        end = f"{start_of_plateau}, and then changes by less than 1 % up to {end}"
+        times = ""
     return (
         f"The stiffness {name} {verb} from {start} at {begin} to {_format_value(last, units[name])} "
         f"at {end}{times}. "
@@ -279,7 +290,7 @@ def make_ramp_figure(load_history: LoadHistory) -> Figure:
     end, unit = _to_display_unit(load_history.model.ramp.end_value, ramped.unit)
     meaning = "; ".join(f"{name}: {doc}" for name, doc in docs.items() if name != ramped.name)
     text = (
-        f"{ramped.name} ({ramped.doc}) from 0 to {float(end):.4g} {unit}; all other inputs have their start "
+        f"{ramped.name} from 0 to {float(end):.4g} {unit}: {ramped.doc}. All other inputs have their start "
         f"values. Curves: {meaning}."
     )
     return Figure("Curves over the load", text, charts)
@@ -307,7 +318,7 @@ def make_loop_figure(load_history: LoadHistory, hysteresis_loops: HysteresisLoop
     ]
     inputs = {v.name: v.unit for v in load_history.model.inputs}
     settings = [
-        f"{name} = {value:g} {format_unit(inputs[name])}"
+        f"{name} = {' '.join(format_quantity(value, inputs[name], 5))}"
         for name, value in load_history.loop_inputs.items()
         if value
     ]
@@ -344,13 +355,16 @@ def _make_loop_table_rows(hysteresis_loops: HysteresisLoops) -> list[tuple[str, 
 
 def _make_comparison_table_rows(comparison_rows: list[ComparisonRow]) -> list[dict[str, str]]:
     """Template rows that compare published with computed numbers of a joint, in display units."""
-    cells = []
+    cells: list[dict[str, str]] = []
+    previous_source = ""
     for row in comparison_rows:
         unit = choose_display_unit(row.si_unit, row.published_value)
         scale, ending = conversion_factor(row.si_unit, unit), f" {format_unit(unit)}".rstrip()
         numbers = (f"{scale * value:.4g}{ending}" for value in (row.published_value, row.computed_value))
         names = ("name", "published", "computed", "role", "source")
-        texts = (row.quantity_name.replace("_", " "), *numbers, row.role, row.source)
+        source = "as above" if row.source == previous_source else row.source
+        previous_source = row.source
+        texts = (row.quantity_name.replace("_", " "), *numbers, row.role, source)
         cells.append(dict(zip(names, texts, strict=True)) | {"limit": "< " if row.is_upper_limit else ""})
     return cells
 
@@ -374,7 +388,7 @@ def _describe_range(load_history: LoadHistory) -> str:
     if load_history.law_limit is None:
         return f"The law is valid for {ramped.name} far beyond the load ramp."
     value, unit = _to_display_unit(load_history.law_limit[0], ramped.unit)
+    reason = load_history.law_limit[1].rpartition(": ")[2]
     return (
-        f"The law is valid up to {ramped.name} = {float(value):.3g} {unit}. Above, the FMU warns: "
-        f"{load_history.law_limit[1]}."
+        f"The law is valid up to {ramped.name} = {float(value):.3g} {unit}. Above, the FMU warns: {reason}."
     )

@@ -7,6 +7,8 @@ from jointfmu_fmu_src.proof.standard import EXPERIMENT_PURPOSES
 from ...common.shown import align_columns
 from .outcome import ExperimentOutcome, ProofResult, WorstPoint
 
+MAX_PRINTED_FAILURES = 8
+"""Largest number of failures that are printed one by one [1]; the tables have all experiments."""
 _POINT_COLUMN_HEADINGS = ("time [s]", "value", "reference", "off by", "allowed")
 """Headings of the columns that describe the worst point."""
 _EXPERIMENT_TABLE_HEADINGS = (
@@ -58,7 +60,10 @@ def format_proof_lines(proof_result: ProofResult) -> Iterator[str]:
             [_OUTPUT_TABLE_HEADINGS, *rows], len(_OUTPUT_TABLE_HEADINGS) - len(_POINT_COLUMN_HEADINGS)
         )
     yield ""
-    yield from (f"missed: {text}" for text in proof_result.failure_messages)
+    messages = proof_result.failure_messages
+    yield from (f"missed: {text}" for text in messages[:MAX_PRINTED_FAILURES])
+    if len(messages) > MAX_PRINTED_FAILURES:
+        yield f"missed: {len(messages) - MAX_PRINTED_FAILURES} more; --json prints all"
     yield format_proof_summary(proof_result)
 
 

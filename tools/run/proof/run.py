@@ -55,7 +55,6 @@ def prove(
     experiments = RelatedFileReader(
         fmu_path, expected_contents.member_contents if expected_contents else None
     ).read_experiments()
-    _check_importer(importer_name)
     with unpack_fmu(fmu_path, accepts_model_exchange=True) as (folder, description):
         if description.fmiVersion[0] not in SUPPORTED_FMI_VERSIONS[importer_name]:
             raise ValueError(
@@ -63,6 +62,7 @@ def prove(
                 f"{' and '.join(f'{digit}.0' for digit in SUPPORTED_FMI_VERSIONS[importer_name])}; choose "
                 "another importer"
             )
+        _check_importer(importer_name)
         offered = _offered_interfaces(description)
         common = [name for name in list_supported_interfaces(importer_name) if name in offered]
         if not common:

@@ -173,6 +173,12 @@ class HysteresisLoops:
             "loss": "J",
         }
 
+    def describe_loop_columns(self) -> str:
+        """Variables of the FMU that the columns of displacement and force contain, as text."""
+        displacement, force = self.loop_column_names
+        sign = "-" if self.force_sign < 0.0 else ""
+        return f"{displacement} = {self.displacement_name}, {force} = {sign}{self.force_name}"
+
     def compute_quantities_of_loops(self) -> list[dict[str, float]]:
         """Compute amplitudes, stiffness and energy loss of each loop: {name: value}."""
         return [loop.compute_loop_quantities() for loop in self.loops]
@@ -215,14 +221,7 @@ class HysteresisLoops:
             ]
             for number, loop in enumerate(self.loops, 1)
         ]
-        sign = "-" if self.force_sign < 0.0 else ""
-        displacement_column, force_column = self.loop_column_names
-        meanings = (
-            f"# {displacement_column} = {self.displacement_name}, {force_column} = {sign}{self.force_name}"
-        )
-        return columns.format_table(
-            heads, [np.concatenate(part) for part in zip(*parts, strict=True)], header_lines=[meanings]
-        )
+        return columns.format_table(heads, [np.concatenate(part) for part in zip(*parts, strict=True)])
 
 
 def run_loops(

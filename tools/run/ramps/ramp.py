@@ -40,13 +40,13 @@ MAX_RAMP_END = 1e12
 """Largest magnitude of the input at the end of a ramp [SI]."""
 
 
-def ramp_points(end_value: float, value_step: float) -> Array:
-    """Values of the input on a load ramp: 0, step, 2 step, ..., end; the last step may be shorter.
+def ramp_points(end_value: float, value_step: float, start_value: float = 0.0) -> Array:
+    """Values of the input on a load ramp: start, start + step, ..., end; the last step may be shorter.
 
     Raises ValueError if a value is not finite, if |end| is above MAX_RAMP_END, or if the step is zero or has
-    the other sign than `end_value`.
+    the other sign than the way from start to end.
     """
-    for name, value in (("to", end_value), ("step", value_step)):
+    for name, value in (("to", end_value), ("step", value_step), ("start of the ramp", start_value)):
         if not np.isfinite(value):
             raise ValueError(f"{name} = {value:g} is outside (-inf, inf): must be finite")
     if abs(end_value) > MAX_RAMP_END:
@@ -54,17 +54,19 @@ def ramp_points(end_value: float, value_step: float) -> Array:
             f"to = {end_value:g} is outside [-{MAX_RAMP_END:g}, {MAX_RAMP_END:g}] (SI): "
             "limit for loads and motions"
         )
-    if value_step == 0.0 or end_value / value_step < 0.0:
-        allowed = "(-inf, 0)" if end_value < 0.0 else "(0, inf)"
+    length = end_value - start_value
+    if value_step == 0.0 or length / value_step < 0.0:
+        allowed = "(-inf, 0)" if length < 0.0 else "(0, inf)"
         raise ValueError(
-            f"step = {value_step:g} is outside {allowed}: steps must lead from 0 to {end_value:g}"
+            f"step = {value_step:g} is outside {allowed}: steps must lead from {start_value:g} to "
+            f"{end_value:g}"
         )
-    count = end_value / value_step
+    count = length / value_step
     if count > 1e7:
         raise ValueError(
             f"step = {value_step:g} makes {count:.3g} points, allowed are at most 1e7; increase step"
         )
-    whole = np.arange(int(np.floor(count * (1.0 + 1e-12))) + 1) * value_step + 0.0
+    whole = start_value + np.arange(int(np.floor(count * (1.0 + 1e-12))) + 1) * value_step + 0.0
     reached = bool(np.isclose(whole[-1], end_value, rtol=1e-12, atol=0.0))
     return np.asarray(whole if reached else np.append(whole, end_value), dtype=np.float64)
 
@@ -76,7 +78,9 @@ def run_ramp(
     value_step: float,
     start_values: Mapping[str, object] | None = None,
 ) -> RampResult:
-    """Run an FMU along a ramp of one input from zero, with one step of one second for each point.
+    """Run an FMU along a ramp of one input, with one step of one second for each point.
+
+    The ramp starts at the start value of the input, if the caller states one, else at zero.
 
     All other inputs are constant.
 
@@ -85,7 +89,7 @@ def run_ramp(
     fmu_path              : path of a co-simulation FMU, FMI 2.0 or 3.0
     input_name            : name of the varied input
     end_value, value_step : [unit of the input] end and step of the ramp
-    start_values          : start values of parameters and other inputs
+    start_values          : start values of parameters and inputs
 
     Raises
     ------
@@ -93,7 +97,11 @@ def run_ramp(
         value is impossible, or the FMU rejects a value (with the message of the FMU)
     RuntimeError : the FMU does not instantiate
     """
-    return run_path(fmu_path, input_name, ramp_points(end_value, value_step), start_values)
+    others = dict(start_values or {})
+    start = others.pop(input_name, 0.0)
+    if not isinstance(start, float):
+        raise ValueError(f"{fmu_path}: {input_name} = {start!r} is not a number")
+    return run_path(fmu_path, input_name, ramp_points(end_value, value_step, start), others)
 
 
 def run_path(
@@ -167,7 +175,12 @@ def _simulate_paths(
             raise ValueError(f"{fmu_label}: unknown name {name!r}, allowed are {', '.join(settable)}")
         wanted = bool if variables[name].type == "Boolean" else float
         if not isinstance(value, wanted):
-            expected = "true or false" if wanted is bool else "a number"
+            expected = (
+                "true or false"
+                if wanted is bool
+                else f"a number; expected a number in {variables[name].unit or '1'} with a decimal point, "
+                "without its unit"
+            )
             raise ValueError(f"{fmu_label}: {name} = {value!r} is not {expected}")
     messages: list[str] = []
     rows: list[list[float]] = []

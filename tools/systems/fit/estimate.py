@@ -25,6 +25,7 @@ from ...inputs.fitting.outcome import (
     FitPlot,
     FitResult,
     build_fitted_file,
+    find_undetermined_parameters,
 )
 from ..fmu.assembly import assemble_system
 from ..system import System
@@ -335,7 +336,12 @@ def _make_fit_result(
     first, last = record.time[0], record.time[count - 1]
     return FitResult(
         build_fitted_file(
-            start_parameter_file, names, "measured", record.record_path.name, f"{first:.4g} to {last:.4g} s"
+            start_parameter_file,
+            names,
+            "measured",
+            record.record_path.name,
+            f"{first:.4g} to {last:.4g} s",
+            find_undetermined_parameters(fit_solution),
         ),
         fit_solution,
         facts,

@@ -10,7 +10,12 @@ from xml.etree.ElementTree import Element, SubElement
 
 import numpy as np
 from jointfmu_fmu_src.proof import standard
-from jointfmu_fmu_src.proof.files import EXPERIMENT_TEXT_PATH, ManifestEntry, place_reference_files
+from jointfmu_fmu_src.proof.files import (
+    EXPERIMENT_TEXT_PATH,
+    ManifestEntry,
+    annotate_output_scales,
+    place_reference_files,
+)
 from jointfmu_fmu_src.proof.series import TimeSeries, format_time_series_csv
 from jointfmu_fmu_src.proof.standard import CO_SIMULATION, MODEL_EXCHANGE
 from jointfmu_fmu_src.xml_parts import serialize_xml
@@ -278,9 +283,5 @@ def _format_experiments(
             {key: f"{value:.12g}" for key, value in times.items()},
         )
         SubElement(node, "References", source=path)
-        annotation = SubElement(
-            SubElement(node, "Annotations"), "Annotation", type=standard.OUTPUT_SCALES_ANNOTATION_TYPE
-        )
-        for output, scale in output_scales.items():
-            SubElement(annotation, "Scale", name=output, value=f"{scale:.{RESULT_SIGNIFICANT_DIGITS}g}")
+        annotate_output_scales(node, output_scales)
     return serialize_xml(root)

@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from ...contact.laws import mindlin
 from ...mechanics.stable_steps import STABLE_STEP_OUTPUTS
-from ...quantity import Number, select
+from ...quantity import Array, Number, select
 from ..model import EXTRAPOLATION_WARNING, LoadCycle, LoadRamp, Model, ValidityLimit, Variable, VariableValues
 from .joint import BoltedJointSpring, JointInputs
 from .law import (
@@ -88,6 +89,21 @@ def _max_row_moment(joint_parameters: Any, input_values: VariableValues) -> Numb
         * joint_parameters.row_distance
         * joint_parameters.row_bolts
     )
+
+
+def _loop_damping_scale(joint_parameters: Any, cycle: Mapping[str, Array]) -> dict[str, float]:
+    """Scale of the round-off of C_loop = eta_loop sqrt(mass K): its value at stick.
+
+    With elastic sides, K is K_xx. In gross slip, K_xx falls to the round-off of its value at stick, 2e-16 of
+    it. The square root of this fraction is 1.5e-8.
+    """
+    return {
+        "C_loop": float(
+            mindlin.equivalent_damping(
+                np.max(cycle["eta_loop"]), joint_parameters.mass, np.max(cycle["K_xx"])
+            )
+        )
+    }
 
 
 def _make_model_variant(fmu_model: Model, joint_parameters: AnyBoltedJoint) -> Model:
@@ -252,7 +268,7 @@ MODELS = (
             ),
         ),
         ramp=LoadRamp("preload", _DEFAULT_RAMP_END_PRELOAD, 100.0, find_load_range=_find_ramp_range),
-        load_cycle=LoadCycle("s_rel_x", 5e-6, {"preload": _DEFAULT_LOOP_PRELOAD}),
+        load_cycle=LoadCycle("s_rel_x", 5e-6, {"preload": _DEFAULT_LOOP_PRELOAD}, _loop_damping_scale),
         dependencies={
             "f_x": (*_INPUT_NAMES_WITHOUT_RATES, "v_rel_x", "omega_z"),
             "f_y": (*_INPUT_NAMES_WITHOUT_RATES, "v_rel_y", "omega_z"),

@@ -12,10 +12,10 @@ drives the motor, the friction holds it). So positive and negative friction have
 
 Friction builds up over the angle phi1 in Jenkins sliders in parallel, each a spring in series with dry
 friction that has a fixed share of M. At constant M the friction from the virgin state approximates
-M (1 - exp(-phi1/presliding)) (Dahl 1968); after a reversal it follows Masing's rule. The spring stiffness
-does not change with M. So a drive at rest holds any torque below M without motion and without a threshold of
-speed, and the work on every path equals stored energy plus loss. The lubricant adds the viscous torque
-f_viscous friction_viscous w1.
+M (1 - exp(-k phi1/M)) (Dahl 1968); after a reversal it follows Masing's rule. The spring stiffness k =
+M_r/presliding does not change with M; M_r is the limit at rated torque and zero speed. So a drive at rest
+holds any torque below M without motion and without a threshold of speed, and the work on every path equals
+stored energy plus loss. The lubricant adds the viscous torque f_viscous friction_viscous w1.
 
 The temperature acts by Reynolds' law of viscosity (1886),
 exp(-coefficient (temperature - REFERENCE_TEMPERATURE)), with one coefficient for viscous and one for dry
@@ -54,7 +54,7 @@ _SLIDER_STIFFNESS_AND_LIMIT_SHARES = slider_shares(1.0, _REMAINING_FRICTION_SHAR
 """Shares of each slider in the total stiffness and in the total limit [1]."""
 SLIDER_STIFFNESS_SHARES = np.array(_SLIDER_STIFFNESS_AND_LIMIT_SHARES[0])
 SLIDER_LIMIT_SHARES = np.array(_SLIDER_STIFFNESS_AND_LIMIT_SHARES[1])
-"""Shares [1] of each slider in the total spring stiffness M/presliding and in the total limit M."""
+"""Shares [1] of each slider in the total spring stiffness M_r/presliding and in the total limit M."""
 REFERENCE_TEMPERATURE = 293.15
 """Temperature [K] at which the friction parameters hold: 20 degrees C, as in the catalogues."""
 PRIOR_ROTATION_TIME = 0.1
@@ -135,10 +135,10 @@ def viscous_torque(
 
 
 def sticking_stiffness(drive_parameters: DriveParameters) -> Number:
-    """Total spring stiffness [N.m/rad] of the friction sliders before slip: M/presliding.
+    """Total spring stiffness [N.m/rad] of the friction sliders before slip: M_r/presliding.
 
-    M is the larger friction limit of both directions, at zero speed, rated torque and REFERENCE_TEMPERATURE;
-    presliding [rad] is a parameter of the drive.
+    M_r is the larger friction limit of both directions, at zero speed, rated torque and
+    REFERENCE_TEMPERATURE; presliding [rad] is a parameter of the drive.
     """
     return (
         np.maximum(*friction_limits(drive_parameters, 0.0, drive_parameters.rated_torque))

@@ -27,7 +27,14 @@ def declare_assembly_arguments(parser: argparse.ArgumentParser) -> None:
         "assembly file with bodies and bolts (TOML), as in models/assemblies",
         "ASSEMBLY",
     )
-    declare_argument(parser, "--preload", float, "preload of each bolt [N]", "F", default=9e3)
+    declare_argument(
+        parser,
+        "--preload",
+        float,
+        "force of each bolt [N]: the preload that remains after embedding",
+        "F",
+        default=9e3,
+    )
     declare_argument(
         parser,
         "--params",

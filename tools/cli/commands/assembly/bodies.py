@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 BOLT_POSITION_TOLERANCE = 1e-6
 """Largest distance [m] of a bolt outside the bounding rectangle of the contact."""
+MAX_NODE_DISTANCE_OVER_HOLE_DIAMETER = 0.9
+"""Diameter over that of a hole [1], within which a node shows that the contact has no hole there."""
 MIN_CONTACT_OVER_PLATE_AREA, MAX_CENTROID_OFFSET_OVER_PLATE_SIZE = 0.9, 0.01
 """Limits for a warning: contact area over the area of the plates [1], at least, and distance between the
 centroids of contact and plates over the plate size [1], at most."""
@@ -138,8 +140,9 @@ def build_assembly(
     thick = [parse_number("thickness", text, "mm", "m") for text in args.thickness]
     low, high = np.min(contact_field.node_positions, axis=0), np.max(contact_field.node_positions, axis=0)
     (length, width), area = high - low, float(np.sum(contact_field.nodal_area))
+    hole_area = _count_holes(contact_field, bolt_positions, hole) * 0.25 * np.pi * hole**2
     # a node in the middle of its area lies half an area's width inside the edge: enlarge to the true area
-    missing_area = area + len(bolt_positions) * 0.25 * np.pi * hole**2 - length * width
+    missing_area = area + hole_area - length * width
     half = 0.5 * (length + width)
     extension = np.sqrt(max(half**2 + missing_area, 0.0)) - half
     extension = float(np.clip(extension, 0.0, np.sqrt(contact_field.nodal_area.max())))
@@ -160,20 +163,30 @@ def build_assembly(
     )
     plates = Assembly(parameter_file.name, sides[0], sides[1], bolts)
     check_thickness(plates)
+    share = area / (sides[0].length * sides[0].width - hole_area)
     notes = [
         f"the plates are the rectangle around the contact, {1e3 * sides[0].length:.4g} x "
-        f"{1e3 * sides[0].width:.4g} mm, heads {1e3 * head:.4g} mm over holes of {1e3 * hole:.4g} mm"
+        f"{1e3 * sides[0].width:.4g} mm, of which the contact covers {share:.0%}; heads {1e3 * head:.4g} mm "
+        f"over holes of {1e3 * hole:.4g} mm"
     ]
     centroid = -0.25 * np.pi * hole**2 * places.sum(axis=0) / plates.contact_area
     offset = np.hypot(*(contact_field.contact_centroid - 0.5 * (low + high) - centroid)) / max(length, width)
-    if (
-        share := area / plates.contact_area
-    ) < MIN_CONTACT_OVER_PLATE_AREA or offset > MAX_CENTROID_OFFSET_OVER_PLATE_SIZE:
+    if share < MIN_CONTACT_OVER_PLATE_AREA or offset > MAX_CENTROID_OFFSET_OVER_PLATE_SIZE:
         notes.append(
             f"the contact covers {share:.0%} of the rectangle around it, and its centroid is {offset:.1%} of "
             "the plate size off the middle: if the plates are not rectangular, their stiffness is wrong"
         )
     return plates, notes
+
+
+def _count_holes(contact_field: ContactPressureField, bolt_positions: Array, hole_diameter: float) -> int:
+    """Number of bolts around which the contact has a hole: no node lies well inside it.
+
+    bolt_positions : (b, 2) [m]
+    """
+    distance = np.linalg.norm(contact_field.node_positions[:, None] - bolt_positions, axis=2)
+    radius = 0.5 * MAX_NODE_DISTANCE_OVER_HOLE_DIAMETER * hole_diameter
+    return int(np.sum(np.min(distance, axis=0) > radius))
 
 
 def _find_hole_and_head_diameters(

@@ -57,13 +57,11 @@ def add_command(command_parsers: SubParsers) -> None:
         sub,
         "--refine",
         int,
-        "number of meshes, each finer than the last, for a convergence study, 1 to "
-        f"{MAX_CONVERGENCE_STUDY_MESHES}",
+        f"convergence study: number of meshes, 1 to {MAX_CONVERGENCE_STUDY_MESHES}, each finer than the one "
+        "before, the second with --refinement",
         default=1,
     )
-    text = (
-        f"factor by which all elements are smaller, {MIN_MESH_REFINEMENT:g} to 4; below 1: coarser and faster"
-    )
+    text = f"factor that divides all element sizes, {MIN_MESH_REFINEMENT:g} to 4; below 1: coarser, faster"
     declare_argument(sub, "--refinement", float, text, "R", default=1.0)
 
 
@@ -100,7 +98,12 @@ def _run_compute(args: argparse.Namespace) -> CommandResult:
     )
     document = facts | {"meshes": [_mesh_result_to_json(row) for row in rows], "written": written}
     document |= {"whole": derived_values_to_json(whole)} if whole else {}
-    lines = [*_format_results(facts), *_format_convergence(rows), *format_derived_values(whole)]
+    lines = [
+        *_format_results(facts),
+        *_format_convergence(rows),
+        *(describe_fmu_preload(args, result) if args.out else ()),
+        *format_derived_values(whole),
+    ]
     return CommandResult(
         json_document=document, output_lines=lines, stiffness_judgement=judgement, written_files=written
     )
@@ -159,6 +162,23 @@ def _insert_pressure_field(
 def tightening_force(args: argparse.Namespace, parameter_file: ParameterFile) -> float:
     """Tightening force [N] of each bolt: the preload before embedding."""
     return float(args.preload + parameter_file.values.embedding)
+
+
+def describe_fmu_preload(args: argparse.Namespace, parameter_file: ParameterFile) -> list[str]:
+    """List a line that states the input `preload` with which the FMU has the pressure field.
+
+    The list is empty if the joint has no embedding: then the input is `--preload`.
+    """
+    embedding = parameter_file.values.embedding
+    if not embedding:
+        return []
+    preload = tightening_force(args, parameter_file)
+    start = parameter_file.inputs.get("preload")
+    return [
+        f"set preload = {preload:.5g} N in the FMU to get this field: embedding takes {embedding:.5g} N, "
+        f"{args.preload:.5g} N remain"
+        + (f"; the start value in the file is {start:.5g} N" if start not in (None, preload) else "")
+    ]
 
 
 def _results_to_json(

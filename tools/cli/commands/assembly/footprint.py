@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from jointfmu.files.outputs import PARAMETER_FILE, PICTURE_FILE, write_parameter_text
 from jointfmu.joints import KINDS
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.parameters import ParameterFile, format_parameter_file
 
 from ....common.judgement import assess_law_stiffness, find_rms_height
@@ -46,7 +47,12 @@ def _declare_import(subcommand_parsers: SubParsers) -> None:
         "contact pressure at nodes: CSV, CalculiX .frd, ANSYS or Abaqus listing, or a mesh such as .vtu",
     )
     declare_argument(
-        step, "--preload", float, "preload of each bolt in the contact result [N]", "F", required=True
+        step,
+        "--preload",
+        float,
+        "force of each bolt in the contact result [N]: the preload that remains after embedding",
+        "F",
+        required=True,
     )
     declare_argument(
         step,
@@ -103,7 +109,10 @@ def _declare_import(subcommand_parsers: SubParsers) -> None:
         step, "--moment", float, "bending moment about x in the result of --moment-file [N.m]", "M"
     )
     declare_argument(
-        step, "--moment-file", Path, "contact result of the same nodes under preload and --moment"
+        step,
+        "--moment-file",
+        Path,
+        "contact result at the same nodes, under the preload and the moment of --moment",
     )
     bodies.declare_body_arguments(step)
     step.set_defaults(options=OPTION_NAME_BY_ARGUMENT)
@@ -135,9 +144,8 @@ def _run_import(args: argparse.Namespace) -> CommandResult:
         force_tolerance=FIELD_FORCE_TOLERANCE if args.force_tolerance is None else args.force_tolerance,
     )
     file = replace(file, name=f"{start.name}, field of {args.file.name}")
-    whole = {}
+    whole, preload = {}, compute.tightening_force(args, file)
     if plates:
-        preload = compute.tightening_force(args, file)
         file = insert_elastic_bodies(
             file, plates, preload, args.attached or "faces", reduction.full_distribution
         )
@@ -151,14 +159,19 @@ def _run_import(args: argparse.Namespace) -> CommandResult:
         KINDS[file.joint].extract_law(file.values), [facts["p_mean"]], find_rms_height(file), facts["p_max"]
     )
     facts |= {"outline": notes[0]} if notes else {}
-    judgement = judgement.prepend_warnings([*notes[1:], *([] if plates else warn_missing_members(start))])
+    missing = [] if plates else warn_missing_members(start, "add them with --thickness T1 T2")
+    judgement = judgement.prepend_warnings([*notes[1:], *missing])
     scaling = facts["force_of_the_bolts"] / field.normal_force - 1.0
     if abs(scaling) > FIELD_FORCE_TOLERANCE:
         text = f"the pressures are scaled by {100.0 * scaling:+.2g} % to the force of the bolts"
         judgement = judgement.prepend_warnings(
             [f"{text}: compare with the contact force of your finite-element run to see which is wrong"]
         )
-    lines = [*_format_results(facts, start.values.A_0), *format_derived_values(whole)]
+    lines = [
+        *_format_results(facts, start.values.A_0),
+        *compute.describe_fmu_preload(args, file),
+        *(format_derived_values(whole) if whole else [_format_rigid_stiffness(file, preload)]),
+    ]
     lines += [f"wrote {path}" for path in facts["written"]]
     facts |= {"whole": derived_values_to_json(whole)} if whole else {}
     return CommandResult(json_document=facts, output_lines=lines, stiffness_judgement=judgement)
@@ -219,6 +232,14 @@ def _results_to_json(
         "deviation_beyond": field_reduction.deviation_above_tested_moments,
         "written": [str(path) for path in (args.out, args.plot) if path],
     }
+
+
+def _format_rigid_stiffness(parameter_file: ParameterFile, preload: float) -> str:
+    """Format the stiffness of interface and bolts between rigid plates, at a preload [N] at tightening."""
+    still = (0.0, 0.0, 0.0)
+    outputs = BoltedJointSpring.from_joint(parameter_file.values).evaluate(preload, 0.0, still, still)
+    numbers = ", ".join(f"{name} = {outputs[name]:.4g} N/m" for name in ("K_xx", "K_yy", "K_zz"))
+    return f"interface and bolts between rigid plates: {numbers}; --thickness T1 T2 adds the plates"
 
 
 def _format_results(json_document: dict[str, Any], old_contact_area: float) -> list[str]:

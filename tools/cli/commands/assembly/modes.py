@@ -32,7 +32,7 @@ def add_modes_command(command_parsers: SubParsers) -> None:
     declare_assembly_arguments(sub)
     declare_argument(sub, "--moment", float, "bending moment on the joint about x [N.m]", "M", default=0.0)
     declare_argument(sub, "--count", int, f"number of elastic modes, 1 to {MAX_MODE_COUNT}", default=6)
-    text = "factor by which all elements are smaller, 0.1 to 4; below 1: coarser and faster"
+    text = "factor that divides all element sizes, 0.1 to 4; below 1: coarser, faster"
     declare_argument(sub, "--refinement", float, text, "R", default=1.0)
     declare_output(sub, "--vtu", MESH_FILE, "write the mode shapes as a mesh for ParaView (.vtu)")
 

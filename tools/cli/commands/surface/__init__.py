@@ -75,7 +75,7 @@ def add_command(command_parsers: SubParsers) -> None:
         "UNIT",
     )
     declare_argument(find, "--unit-z", str, "length unit of the heights z (default: --unit)", "UNIT")
-    text = "spacing of the points of files that state none, as in 5um; or two values, along x and y"
+    text = "spacing of the points of files that state none, with its unit as in 5um; or two values, x and y"
     declare_argument(find, "--spacing", str, text, "LENGTH", nargs="+")
     text = "number that marks missing points in the file, as in -99999.9999"
     declare_argument(find, "--missing", float, text, "VALUE")

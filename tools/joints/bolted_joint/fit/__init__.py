@@ -16,6 +16,7 @@ FIT_PROCEDURES = (
     FitProcedure(
         procedure_name="preload",
         procedure_description="the bolted joint to stiffness or frequency over preload",
+        default_start_text="none, state it",
         takes_file=True,
         procedure_options=(
             Option(
@@ -26,7 +27,8 @@ FIT_PROCEDURES = (
             ),
             Option(
                 "modal_mass",
-                "mass that vibrates on the joint [kg], for frequencies only (default: the fit finds it)",
+                "mass that vibrates on the joint [kg], for frequencies only (default: mass is fitted instead "
+                "of the stiffness)",
                 is_number=True,
             ),
             SERIES_STIFFNESS_OPTION,
@@ -35,13 +37,16 @@ FIT_PROCEDURES = (
     ),
     FitProcedure(
         procedure_name="loop",
-        procedure_description="the bolted joint to loops, decays or responses in shear",
+        procedure_description="friction and stiffness of the bolted joint to loops, decays or responses of "
+        "its displacement in shear",
+        default_start_text="bolted joint: box specimen of Zhao 2018",
         takes_file=True,
         identifying_column="displacement",
         procedure_options=(
             Option(
                 "preload",
-                "preload of each bolt in the test of a bolted joint [N] (default: that of --params)",
+                "force of each bolt of a bolted joint at tightening [N], from which the embedding of "
+                "--params is subtracted (default: preload of --params)",
                 is_number=True,
             ),
             Option(

@@ -33,14 +33,23 @@ from jointfmu.quantity.units import unit_sizes
 from ....inputs.fitting import hysteresis_fit
 from ....inputs.fitting.branches import MeasuredLoops
 from ....inputs.fitting.hysteresis import HysteresisLaw
-from ....inputs.fitting.least_squares import Unknown, UnknownExchange
+from ....inputs.fitting.least_squares import FitSolution, Unknown, UnknownExchange
 from ....inputs.fitting.measurement import Measurement, MeasurementColumns, read_measurement
-from ....inputs.fitting.outcome import DerivedFitValues, FitResult, build_fitted_file, make_fit_unknowns
+from ....inputs.fitting.outcome import (
+    DerivedFitValues,
+    FitResult,
+    build_fitted_file,
+    find_undetermined_parameters,
+    make_fit_unknowns,
+)
 from .preload import (
     BOLTED_JOINT_FOR_FITS,
     SERIES_STIFFNESS_NAME,
     compute_joint_stiffness,
+    describe_series_remedy,
+    make_embedding_fact,
     merged_normalised_pressure,
+    note_large_roughness,
 )
 from .preload import DEFAULT_FITTED_PARAMETERS as INTERFACE
 
@@ -58,10 +67,15 @@ UNKNOWNS_OUTSIDE_JOINT = (hysteresis_fit.DAMPING_RATIO_NAME, SERIES_STIFFNESS_NA
 """Unknowns that are not parameters of the joint."""
 START_SERIES_STIFFNESSES_OVER_JOINT_STIFFNESS = (2.0, 1.1, 1.5, 5.0)
 """Start values of the series stiffness over the measured stiffness at rest [1]."""
+MAX_FRICTION_LIMIT_MISFIT = 0.02
+"""Relative difference of the friction limit and the flat ends of loops [1], from which a note is printed."""
 TABLE_END_OVER_LOOP_AMPLITUDE = 1.05
 """Largest displacement of the tabulated law over the amplitude of the loops [1]."""
 PLAUSIBLE_FRICTION_COEFFICIENT_RANGE = (0.005, 3.0)
-"""Friction coefficients [1] that are plausible for loops in gross slip."""
+"""Plausible friction coefficients [1]."""
+MIN_SLIP_RATIO_FOR_FRICTION = 0.7
+"""Largest friction force of the data over friction limit [1], below which mu depends on the exponent of the
+law: an exponent that is 25 % too large gives a mu that is 15 to 25 % too large."""
 _FIRST_LOADING_STEP_COUNT = 48
 """Number of steps of the table of first loading [1], finer near rest."""
 _ELASTIC_FIRST_LOADING_STEP_COUNT, _GROSS_SLIP_OVER_ELASTIC_DISPLACEMENT = 24, 4.0
@@ -305,6 +319,7 @@ def fit(
         data, make_joint_hysteresis_law, "modal_mass", modal_mass, damping_ratio
     )
     measured_rest = data.rest_stiffness(modal_mass)
+    min_measured_rest = measured_rest
 
     def joint_and_structure_stiffness(parameter_values: Mapping[str, float]) -> float:
         """Stiffness [N/m] at rest of joint and structure in series."""
@@ -316,6 +331,7 @@ def fit(
 
     notes = []
     if isinstance(data.measured_data, MeasuredLoops):
+        min_measured_rest = data.measured_data.min_rest_stiffness
         _check_measured_loops(
             data,
             data.measured_data,
@@ -323,6 +339,7 @@ def fit(
             make_joint({}),
             force,
             file,
+            SERIES_STIFFNESS_NAME in names,
         )
         if not data.measured_data.is_stiffness_resolved and not fitted_names:
             _, *level_names = names
@@ -330,19 +347,24 @@ def fit(
             notes.append(
                 f"the loops do not determine {', '.join(level_names)}, values of {file.name} are kept: all "
                 "of the interface slips within few samples after each reversal; the stiffness after a "
-                f"reversal is at least {measured_rest:.3g} N/m"
+                f"reversal is at least {min_measured_rest:.3g} N/m"
             )
     if (
         series_stiffness is not None
         and SERIES_STIFFNESS_NAME not in names
-        and series_stiffness <= measured_rest
+        and series_stiffness <= min_measured_rest
     ):
         raise InputRefusal(
-            f"series stiffness = {series_stiffness:g} N/m is outside ({measured_rest:.4g}, inf): in the "
-            "data, joint and structure together have this stiffness at rest",
+            f"series stiffness = {series_stiffness:g} N/m is outside ({min_measured_rest:.4g}, inf): in the "
+            "data, joint and structure together have at least this stiffness at rest",
             SERIES_STIFFNESS_NAME,
         )
-    unknown_list = make_fit_unknowns(file, [name for name in names if name not in UNKNOWNS_OUTSIDE_JOINT], {})
+    unknown_list = make_fit_unknowns(
+        file,
+        [name for name in names if name not in UNKNOWNS_OUTSIDE_JOINT],
+        {},
+        UNKNOWNS_OUTSIDE_JOINT if data.measurement_kind != "loops" else (SERIES_STIFFNESS_NAME,),
+    )
     unknown_list += [hysteresis_fit.UNKNOWN_DAMPING_RATIO] * (hysteresis_fit.DAMPING_RATIO_NAME in names)
     unknown_list += [
         Unknown(
@@ -394,6 +416,7 @@ def fit(
         "calibration",
         data.measurement_path.name,
         f"{data.describe_range}, preload {force:g} N",
+        find_undetermined_parameters(solution),
     )
     law, joint_facts = make_shear_loop_law(
         make_joint(solution.values), force, get_series_stiffness(solution.values), reach
@@ -401,14 +424,67 @@ def fit(
     slip_ratio = (
         float(law.friction_force(np.array([data.largest_amplitude]))[0]) / joint_facts["friction_limit"][0]
     )
+    if isinstance(data.measured_data, MeasuredLoops) and data.measured_data.slip_force:
+        text = "measured, half the force difference of the flat ends"
+        joint_facts["slip_force"] = (data.measured_data.slip_force, "N", text)
     text = "largest friction force of the data over friction_limit"
-    facts = joint_facts | {"slip_reached": (slip_ratio, "1", text)}
-    return FitResult(
+    facts = make_embedding_fact(file, force) | joint_facts | {"slip_reached": (slip_ratio, "1", text)}
+    is_exponent_fitted = not {*DEFAULT_FITTED_PARAMETERS[file.law][2:]}.isdisjoint(names)
+    if "mu" in names and not is_exponent_fitted and slip_ratio < MIN_SLIP_RATIO_FOR_FRICTION:
+        exponent, mu = joint_facts["exponent"][0], solution.values["mu"]
+        notes.append(
+            f"slip_reached = {slip_ratio:.3g} is below {MIN_SLIP_RATIO_FOR_FRICTION:g}: the data determine "
+            f"only exponent/mu = {exponent / mu:.4g}; mu = {mu:.3g} holds for the exponent {exponent:.3g} of "
+            "the law, which is not fitted: add data of larger amplitude"
+        )
+    fit_result = FitResult(
         result,
         solution,
         facts | hysteresis_fit.summarize_fit(data, solution, law, scale),
         hysteresis_fit.make_fit_plots(data, model, solution.values, scale),
-        notes=[*notes, *hysteresis_fit.list_misfit_notes(data, solution)],
+        notes=[
+            *notes,
+            *note_large_roughness(file, solution, not is_joint_alone),
+            *_note_friction_limit(joint_facts, result.values.mu),
+            *hysteresis_fit.list_misfit_notes(data, solution, law, scale),
+        ],
+    )
+    if fit_result.rejection_reason():
+        return fit_result
+    return replace(
+        fit_result, procedure_rejection_reason=_reject_friction_coefficient(solution, force, modal_mass)
+    )
+
+
+def _note_friction_limit(joint_facts: DerivedFitValues, mu: float) -> list[str]:
+    """Note for the user if the friction limit of the law misses the flat ends of the loops; else empty."""
+    if "slip_force" not in joint_facts:
+        return []
+    limit, slip_force = joint_facts["friction_limit"][0], joint_facts["slip_force"][0]
+    if abs(limit / slip_force - 1.0) <= MAX_FRICTION_LIMIT_MISFIT:
+        return []
+    return [
+        f"friction_limit is {100.0 * abs(limit / slip_force - 1.0):.2g} % "
+        f"{'above' if limit > slip_force else 'below'} slip_force: the law cannot follow the shape of the "
+        f"loops; the flat ends alone give mu = {mu * slip_force / limit:.4g}"
+    ]
+
+
+def _reject_friction_coefficient(
+    solution: FitSolution, preload: float, modal_mass: float | None
+) -> str | None:
+    """Reason to reject a fit whose friction coefficient is not plausible, as text; None if it is plausible.
+
+    preload, modal_mass : of each bolt [N], of the vibrating mass [kg]; None: loops
+    """
+    low, high = PLAUSIBLE_FRICTION_COEFFICIENT_RANGE
+    mu = solution.values.get("mu")
+    if mu is None or low <= mu <= high:
+        return None
+    mass_text = "" if modal_mass is None else f"the vibrating mass, --modal-mass {modal_mass:g} kg, "
+    return (
+        f"mu = {mu:.4g} is outside [{low:g}, {high:g}]; check {mass_text}the preload of each bolt, "
+        f"{preload:g} N, and the units of the columns"
     )
 
 
@@ -419,11 +495,13 @@ def _check_measured_loops(
     joint_parameters: AnyBoltedJoint,
     preload: float,
     start_file: ParameterFile,
+    is_series_fitted: bool,
 ) -> None:
     """Check measured loops: stiffness after reversals, gross-slip force, and no bolt touches its hole.
 
     measured_over_start_stiffness : measured stiffness over stiffness of the start values [1]
     joint_parameters, preload     : joint with the start values, preload [N] of each bolt
+    is_series_fitted              : whether the fit finds a stiffness in series; the joint may then be soft
 
     Raises ValueError for loops whose force rises again after slip. Raises InputRefusal for a stiffness far
     from the stiffness of the start values, and for a slip force without a plausible friction coefficient.
@@ -447,13 +525,23 @@ def _check_measured_loops(
                 "bolt",
                 "preload",
             )
-    if measured_loops.is_stiffness_resolved or measured_over_start_stiffness > 1.0:
+    if measured_over_start_stiffness > 1.0:
         LOOP_COLUMN_NAMES.check_stiffness_ratio(
             measured_data.measurement_path,
             measured_over_start_stiffness,
             measured_data.stated_units,
             start_file,
             slip_force is not None,
+        )
+    elif measured_loops.is_stiffness_resolved and not is_series_fitted:
+        LOOP_COLUMN_NAMES.check_stiffness_ratio(
+            measured_data.measurement_path,
+            measured_over_start_stiffness,
+            measured_data.stated_units,
+            start_file,
+            slip_force is not None,
+            "members or structure in series with the joint may make it soft: "
+            f"{describe_series_remedy(start_file, False)}",
         )
 
 

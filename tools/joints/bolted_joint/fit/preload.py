@@ -40,11 +40,14 @@ from ....inputs.fitting.least_squares import (
     select_start_values,
     solve_least_squares,
 )
+from ....inputs.fitting.measurement import COLUMN_SYNONYMS
 from ....inputs.fitting.outcome import (
+    RMS_HEIGHT_PARAMETER,
     DerivedFitValues,
     FitPlot,
     FitResult,
     build_fitted_file,
+    find_undetermined_parameters,
     make_fit_unknowns,
     note_residual_correlation,
 )
@@ -58,10 +61,17 @@ COLUMN_UNITS: Mapping[str, UnitSizes] = {
     "frequency": unit_sizes("Hz", "kHz"),
 }
 """Columns of a file of the fit, with their units."""
+MAX_ROUGHNESS_OVER_START_VALUE = 10.0
+"""Fitted roughness over that of the start file [1], above which it is no roughness: the range of a process
+(ASME B46.1) is about a factor of 4 on each side of its mean."""
 MIN_STATISTICAL_DEGREES_OF_FREEDOM = 2
 """Number of points in excess of the unknowns [1], from which the fit estimates the noise of a point."""
-ASSUMED_RELATIVE_NOISE = 0.05
-"""Relative standard deviation [1] of a point, assumed if there are too few points to estimate it."""
+ASSUMED_RELATIVE_NOISE = {"stiffness": 0.05, "frequency": 0.005}
+"""{quantity: relative standard deviation [1] of a point}, assumed if too few points are left for an
+estimate."""
+MAX_TREND_PROBABILITY = 0.01
+"""Probability [1] that noise alone makes the trend of the residuals over the preload, below which the trend
+is an error of the law."""
 DEFAULT_FITTED_PARAMETERS: Mapping[str, tuple[str, ...]] = {
     "zhao2018": ("surface.G", "surface.D"),
     "roughness": ("h",),
@@ -105,6 +115,53 @@ def compute_joint_stiffness(
         )
         return np.asarray(normal + joint_parameters.n_bolts * joint_parameters.bolt_stiffness * pulling)
     return np.asarray(joint_parameters.shear_stiffness_ratio() * normal)
+
+
+def describe_series_remedy(start_file: ParameterFile, is_series_known: bool) -> str:
+    """What to do if bodies in series with the joint make the measured stiffness too small, as text.
+
+    is_series_known : whether the series stiffness is stated or fitted
+    """
+    if is_series_known:
+        return "check the series stiffness"
+    members = "" if start_file.values.has_elastic_members else "start from a file with sides = elastic, or "
+    return f"{members}state --series-stiffness, or fit it (--free ... {SERIES_STIFFNESS_NAME})"
+
+
+def note_large_roughness(
+    start_file: ParameterFile, solution: FitSolution, is_series_known: bool
+) -> list[str]:
+    """Note for the user if the fitted roughness is far above that of the start file; else an empty list.
+
+    Then the compliance of bodies in series with the joint counts as roughness.
+
+    is_series_known : whether the series stiffness is stated or fitted
+    """
+    fitted, start = (
+        values.get(RMS_HEIGHT_PARAMETER, 0.0) for values in (solution.values, start_file.values_by_name)
+    )
+    if fitted <= MAX_ROUGHNESS_OVER_START_VALUE * start:
+        return []
+    return [
+        f"{RMS_HEIGHT_PARAMETER} = {1e6 * fitted:.3g} um is {fitted / start:.3g} times that of the start "
+        f"file, {1e6 * start:.3g} um: members or structure in series with the joint probably count as "
+        f"roughness; {describe_series_remedy(start_file, is_series_known)}"
+    ]
+
+
+def make_embedding_fact(start_file: ParameterFile, preload: float | None = None) -> DerivedFitValues:
+    """Fact of a fit: force that clamps the joint, if embedding reduces the preload; else empty.
+
+    preload : of each bolt in the test [N]; None: several preloads, the fact is the embedding
+    """
+    embedding = float(start_file.values.embedding)
+    if not embedding:
+        return {}
+    if preload is None:
+        text = "subtracted from each preload: the force that clamps the joint in the fit"
+        return {"embedding": (embedding, "N", text)}
+    text = f"per bolt, of the fit: preload {preload:g} N minus embedding {embedding:.5g} N of the start file"
+    return {"clamping_force": (float(working_preload(start_file.values, preload)), "N", text)}
 
 
 @cache
@@ -172,7 +229,9 @@ def fit(
     solution, is_noise_assumed = _solve_fit(unknowns, logarithmic_error, curve)
     own = {name: value for name, value in solution.values.items() if name != SERIES_STIFFNESS_NAME}
     span = f"preload {curve.preloads[0]:g} to {curve.preloads[-1]:g} N, {direction} {curve.quantity_name}"
-    result = build_fitted_file(file, own, "calibration", Path(data_path).name, span)
+    result = build_fitted_file(
+        file, own, "calibration", Path(data_path).name, span, find_undetermined_parameters(solution)
+    )
     stiffness = solution.values.get(SERIES_STIFFNESS_NAME, series_stiffness)
     margin = 0.5 * curve.preloads[0] if curve.different_preload_count == 1 else 0.0
     grid = np.linspace(curve.preloads[0] - margin, curve.preloads[-1] + margin, 200)
@@ -190,10 +249,9 @@ def fit(
     )
     notes = [] if is_noise_assumed else note_residual_correlation(solution.residuals, "curve")
     if is_noise_assumed:
-        notes.append(
-            f"{curve.preloads.size} points are too few to find their scatter: the intervals assume "
-            f"{solution.noise:.0%} for each point"
-        )
+        notes.append(_describe_assumed_noise(curve, solution))
+    is_series_known = series_stiffness is not None or SERIES_STIFFNESS_NAME in names
+    notes += _note_wrong_exponent(curve, solution, describe_series_remedy(file, is_series_known))
     if curve.different_preload_count == 1 and DEFAULT_FITTED_PARAMETERS[file.law][1:]:
         notes.append(
             f"one preload does not determine the exponent: {DEFAULT_FITTED_PARAMETERS[file.law][1]} keeps "
@@ -204,7 +262,9 @@ def fit(
             f"frequencies determine K/mass only: mass is fitted, and {level} keeps its value; state the "
             f"modal mass to fit {level}"
         )
-    return FitResult(result, solution, _summarise_fit(curve, solution), [picture], notes=notes)
+    notes += note_large_roughness(file, solution, is_series_known)
+    facts = make_embedding_fact(file) | _summarise_fit(curve, solution)
+    return FitResult(result, solution, facts, [picture], notes=notes)
 
 
 @dataclass(frozen=True, slots=True)
@@ -228,6 +288,13 @@ class PreloadCurve:
         """
         return float(np.polyfit(np.log(self.preloads), np.log(self.measured_values), 1)[0])
 
+    def law_exponent(self, fit_residuals: Array) -> float:
+        """Exponent [1] of the power of the preload with which the quantity grows by the fitted law.
+
+        fit_residuals : (n) [1] logarithms of fitted over measured values
+        """
+        return self.preload_exponent + float(np.polyfit(np.log(self.preloads), fit_residuals, 1)[0])
+
     @property
     def different_preload_count(self) -> int:
         """Number of different preloads."""
@@ -244,15 +311,16 @@ class PreloadCurve:
 
 def _read_preload_curve(data_path: Path) -> PreloadCurve:
     """Read and check a measured curve: stiffness or frequency over preload."""
-    table = columns.read_columns(data_path, COLUMN_UNITS, 1)
+    table = columns.read_columns(data_path, COLUMN_UNITS, 1, COLUMN_SYNONYMS)
     preload = table.require_column("preload", COLUMN_UNITS)
     quantities = [name for name in ("stiffness", "frequency") if name in table.values_by_name]
     if len(quantities) != 1:
         have = "both" if quantities else "neither"
         choice = {name: COLUMN_UNITS[name] for name in ("stiffness", "frequency")}
         raise ValueError(
-            f"{data_path}: has {have} of stiffness and frequency; expected one: "
-            f"{columns.format_expected_heading(choice)}"
+            f"{data_path}: has {have} of stiffness and frequency, its columns are "
+            f"{', '.join(columns.read_column_names(data_path))}; expected one of "
+            f"{columns.format_expected_heading(choice)}: the frequency is that of one mode"
         )
     table.check_positive_columns(("preload", quantities[0]), COLUMN_UNITS)
     order = np.argsort(preload, kind="stable")
@@ -273,19 +341,64 @@ def _solve_fit(
 ) -> tuple[FitSolution, bool]:
     """Solve the least-squares fit of stiffness or frequency over preload.
 
-    The measurement noise is assumed if there are at most two unknowns and few points: it is then
+    The measurement noise is assumed if there are at most two unknowns and few points: it is then the value of
     ASSUMED_RELATIVE_NOISE, or the noise of the residuals if that is larger. Otherwise the noise follows from
     the residuals.
     """
     degrees_of_freedom = preload_curve.preloads.size - len(unknowns)
     if len(unknowns) > 2 or degrees_of_freedom >= MIN_STATISTICAL_DEGREES_OF_FREEDOM:
         return solve_least_squares(unknowns, logarithmic_error), False
-    solution = solve_least_squares(unknowns, logarithmic_error, residual_deviation=ASSUMED_RELATIVE_NOISE)
+    assumed_noise = ASSUMED_RELATIVE_NOISE[preload_curve.quantity_name]
+    solution = solve_least_squares(unknowns, logarithmic_error, residual_deviation=assumed_noise)
     if degrees_of_freedom < 1:
         return solution, True
     noise = float(np.sqrt(solution.residuals @ solution.residuals / degrees_of_freedom))
-    noise = max(noise, ASSUMED_RELATIVE_NOISE)
+    noise = max(noise, assumed_noise)
     return replace(solution, noise=noise, covariance=parameter_covariance(solution.jacobian, noise)), True
+
+
+def _describe_assumed_noise(preload_curve: PreloadCurve, solution: FitSolution) -> str:
+    """Describe the noise of a fit to few points, as a note for the user."""
+    count, quantity = preload_curve.preloads.size, preload_curve.quantity_name
+    points = "one point is" if count == 1 else f"{count} points are"
+    assumed_noise = ASSUMED_RELATIVE_NOISE[quantity]
+    source = (
+        f"assume {100.0 * assumed_noise:g} % for each {quantity}"
+        if solution.noise <= assumed_noise
+        else f"assume the misfit of the fit, {100.0 * solution.noise:.2g} %"
+    )
+    return (
+        f"{points} too few to find the scatter: the intervals, and the judgement of which values are "
+        f"determined, {source}"
+    )
+
+
+def _note_wrong_exponent(preload_curve: PreloadCurve, solution: FitSolution, series_remedy: str) -> list[str]:
+    """Note for the user if the quantity grows with another power of the preload than by the law; else empty.
+
+    series_remedy : what to do if bodies in series with the joint are the reason
+    """
+    from scipy.stats import linregress  # slow to import, and most commands import this module
+
+    if preload_curve.different_preload_count < 2:
+        return []
+    if preload_curve.preloads.size == 2:
+        is_trend = solution.noise > ASSUMED_RELATIVE_NOISE[preload_curve.quantity_name]
+    else:
+        trend = linregress(np.log(preload_curve.preloads), solution.residuals)
+        is_trend = bool(trend.pvalue < MAX_TREND_PROBABILITY)
+    if not is_trend:
+        return []
+    measured, law = preload_curve.preload_exponent, preload_curve.law_exponent(solution.residuals)
+    reason = (
+        f"members or structure in series with the joint may be the reason; {series_remedy}"
+        if law > measured
+        else "the law cannot follow the data"
+    )
+    return [
+        f"the {preload_curve.quantity_name} grows with the power {measured:.3g} of the preload, by the "
+        f"fitted law with {law:.3g}: {reason}"
+    ]
 
 
 def _set_modal_mass(
@@ -324,7 +437,10 @@ def _find_start_values(
 ) -> Sequence[Unknown]:
     """Unknowns of the fit, each with the start value of smallest error out of several."""
     parameters = make_fit_unknowns(
-        parameter_file, [name for name in fitted_names if name != SERIES_STIFFNESS_NAME], {}
+        parameter_file,
+        [name for name in fitted_names if name != SERIES_STIFFNESS_NAME],
+        {},
+        (SERIES_STIFFNESS_NAME,),
     )
     level = (
         preload_curve.measured_values[-1]
@@ -354,7 +470,8 @@ def _summarise_fit(preload_curve: PreloadCurve, fit_solution: FitSolution) -> De
     power = {}
     if preload_curve.different_preload_count > 1:
         text = f"of the preload with which the {preload_curve.quantity_name} grows"
-        power["power"] = (preload_curve.preload_exponent, "1", text)
+        power["power"] = (preload_curve.preload_exponent, "1", f"{text}, measured")
+        power["power_law"] = (preload_curve.law_exponent(fit_solution.residuals), "1", "of the fitted law")
     return {
         "points": (float(preload_curve.preloads.size), "1", "points used"),
         **power,

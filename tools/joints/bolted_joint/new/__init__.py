@@ -89,7 +89,8 @@ NEW_JOINT_COMMAND = NewJointCommand(
         ),
         Option(
             "preload",
-            "preload of each bolt after tightening [N] (default: from --torque, else VDI 2230, Table A1)",
+            "preload: force of each bolt at tightening [N], from which --embedding is subtracted (default: "
+            "from --torque, else VDI 2230, Table A1)",
             "F",
         ),
         Option(
@@ -124,8 +125,8 @@ NEW_JOINT_COMMAND = NewJointCommand(
         ),
         Option(
             "property_class",
-            "property class of the bolts: gives the preload if you state none (default: 8.8); a stated "
-            "class also warns if tightening uses more than 90 % of the yield strength",
+            "property class of the bolts: gives the preload if you state none (default: 8.8). If you state "
+            "the class, the command warns if tightening uses more than 90 % of the yield strength",
             choices=("8.8", "10.9", "12.9"),
         ),
         Option(

@@ -323,8 +323,8 @@ def _compute_stiffness_results(
             joint,
             unit,
             f"complete joint between {ATTACHMENT_SURFACES[attachment_kind]}, other motions fixed: output "
-            f"{name} of the FMU at preload = {preload:.5g} N; compliance: {shares}; the interface alone is "
-            f"{interface / joint:.3g} times as stiff",
+            f"{name} of the FMU at preload = {preload:.5g} N; compliance by stored energy: {shares}; between "
+            f"rigid plates, which load it evenly, the interface is {interface / joint:.3g} times as stiff",
         )
         members[f"members_{name}"] = (
             alone,

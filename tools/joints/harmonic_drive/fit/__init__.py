@@ -4,16 +4,20 @@ from ....common.options import Option
 from ....inputs.fitting.procedure import FitProcedure, make_lazy_fit
 from ..catalogue import STIFFNESS_COLUMNS
 
+DEFAULT_START_TEXT = "CD-14-100 of Hu 2023"
+"""Drive from which a fit starts if the user states none."""
+
 FIT_PROCEDURES = (
     FitProcedure(
         procedure_name="torque-angle",
         procedure_description="the harmonic drive to a torque-angle curve",
+        default_start_text=DEFAULT_START_TEXT,
         takes_file=True,
         procedure_options=(
             Option(
                 "rated_torque",
-                "rated torque of the drive [N.m]; max_torque, the largest torque of the start file's law, "
-                "is scaled in proportion. Needed if the curve goes beyond max_torque",
+                "rated torque of your drive [N.m]: scales the torques of the start file. Needed if the curve "
+                "goes beyond max_torque of the start file (default: no scaling)",
                 default_unit="N.m",
             ),
             Option(
@@ -26,7 +30,9 @@ FIT_PROCEDURES = (
     ),
     FitProcedure(
         procedure_name="loop",
-        procedure_description="the hysteresis of the harmonic drive to loops, decays or responses",
+        procedure_description="the hysteresis of the harmonic drive to loops, decays or responses of its "
+        "angle",
+        default_start_text=f"harmonic drive: {DEFAULT_START_TEXT}",
         takes_file=True,
         identifying_column="angle",
         procedure_options=(
@@ -42,6 +48,7 @@ FIT_PROCEDURES = (
     FitProcedure(
         procedure_name="log",
         procedure_description="the friction of the harmonic drive to logs of a robot",
+        default_start_text="none, state it, or --drive, or --rated-torque with --ratio",
         takes_file=True,
         takes_several_files=True,
         procedure_options=(
@@ -75,7 +82,9 @@ FIT_PROCEDURES = (
             ),
             Option(
                 "motor_inertia",
-                "moment of inertia of the rotor [kg.m2]; its inertia torque does not load the teeth",
+                "moment of inertia of the rotor [kg.m2], which does not load the teeth (default: fitted, if "
+                "FILE has q_motor or link_torque; otherwise all inertia is that of the arm, and the losses "
+                "that grow with the load are too small)",
                 is_number=True,
             ),
         ),
@@ -84,12 +93,14 @@ FIT_PROCEDURES = (
     FitProcedure(
         procedure_name="catalogue",
         procedure_description="the harmonic drive to the stiffness numbers of a catalogue",
+        default_start_text=DEFAULT_START_TEXT,
         takes_file=False,
         procedure_options=(
             *(
                 Option(
                     column.column_name,
-                    f"{column.column_meaning} [{column.si_unit}]",
+                    f"{column.column_meaning} [{column.si_unit}]; or with its own unit, as in "
+                    f"{'2.9N.m/arcmin' if column.column_name.startswith('K') else '0.4kgf.m'}",
                     is_required=True,
                     default_unit=column.si_unit,
                     unit_option="stiffness_unit" if column.column_name.startswith("K") else "",

@@ -121,7 +121,12 @@ def fit(
         data, make_fit_unknowns(file, names, drive.parameter_bounds(file)), model, starts
     )
     result = build_fitted_file(
-        file, solution.values, "calibration", data.measurement_path.name, data.describe_range
+        file,
+        solution.values,
+        "calibration",
+        data.measurement_path.name,
+        data.describe_range,
+        find_undetermined_parameters(solution),
     )
     fitted_law = make_hysteresis_law(result.values)
     limit = float(fitted_law.friction_force(np.array([np.inf]))[0])
@@ -131,7 +136,7 @@ def fit(
         solution,
         law_facts | hysteresis_fit.summarize_fit(data, solution, fitted_law, scale),
         hysteresis_fit.make_fit_plots(data, model, solution.values, scale),
-        notes=hysteresis_fit.list_misfit_notes(data, solution),
+        notes=hysteresis_fit.list_misfit_notes(data, solution, fitted_law, scale),
     )
 
 

@@ -30,13 +30,20 @@ from ..catalogue import find_drive
 from ..new import NEW_JOINT_COMMAND
 from . import hysteresis
 from .drive import change_rated_torque
-from .log_checks import check_repeated_logs, check_torque_scale, find_friction_doubt, find_gravity_doubt
+from .log_checks import (
+    check_ratio,
+    check_repeated_logs,
+    check_torque_scale,
+    find_friction_doubt,
+    find_gravity_doubt,
+)
 from .log_friction import (
     BACK_DRIVING_LOSS_NAME,
     FITTABLE_FRICTION_PARAMETERS,
     FittedLogFriction,
     LinearTorqueTerms,
     accept_vanishing_friction,
+    add_errors_of_kept_parameters,
     fit_friction_to_samples,
     fit_with_rotor_inertia,
     has_significant_friction,
@@ -102,6 +109,7 @@ def fit(
     if len({log.has_motor_torque for log in logs}) > 1:
         raise ValueError(f"{label}: some logs have no torque of the motor; expected it in all or in none")
     for log in logs:
+        check_ratio(log, file.values)
         check_torque_scale(log, file.values, torque_constant)
     samples = join_samples(
         [log.log_samples.select_samples(log.log_samples.is_friction_developed) for log in logs]
@@ -188,10 +196,13 @@ def _fit_with_friction(
     fitted_log = fit_friction_to_samples(parameter_file, log_samples, names_to_fit, rotor_inertia)
     if rotor_inertia and log_samples.is_of_dynamic_log.any():
         _check_rotor_inertia(rotor_inertia, fitted_log)
+    kept_names: list[str] = []
     if not friction_names:
+        selected_names = names_to_fit
         fitted_log, names_to_fit, dropped = refit_without_undetermined_parameters(
-            parameter_file, log_samples, fitted_log, names_to_fit
+            parameter_file, log_samples, fitted_log, selected_names
         )
+        kept_names = [name for name in selected_names if name not in names_to_fit]
         fit_notes += dropped
     if (
         log_samples.is_of_dynamic_log.any()
@@ -199,7 +210,11 @@ def _fit_with_friction(
         and not log_samples.has_joint_torque_sensor
     ):
         if logs_with_motor_angle and (
-            rotor_fit := _fit_rotor_inertia(parameter_file, logs_with_motor_angle[0], fitted_log)
+            rotor_fit := _fit_rotor_inertia(
+                parameter_file,
+                logs_with_motor_angle[0],
+                add_errors_of_kept_parameters(parameter_file, log_samples, fitted_log, kept_names),
+            )
         ):
             fitted_log = fit_with_rotor_inertia(parameter_file, log_samples, names_to_fit, *rotor_fit)
         else:
@@ -215,6 +230,7 @@ def _fit_with_friction(
             if deviation > 0.0
             else fit_friction_to_samples(parameter_file, log_samples, names_to_fit, rotor)
         )
+    fitted_log = add_errors_of_kept_parameters(parameter_file, log_samples, fitted_log, kept_names)
     fitted_log, vanishing_notes = accept_vanishing_friction(fitted_log)
     fit_notes += vanishing_notes
     if (
@@ -321,15 +337,13 @@ def _make_fitted_parameter_file(
         "calibration",
         file_label,
         _describe_speed_and_temperature_ranges(log_samples),
+        [name for name in fit_solution.values if name not in confidence_intervals],
     )
-    for name, value in fit_solution.values.items():
-        kind, text = "estimate", "not determined: other values fit as well"
-        if name in confidence_intervals:
-            kind = "calibration"
-            text = "{:g} % interval {:.4g} to {:.4g}".format(
-                100.0 * CONFIDENCE_LEVEL, *confidence_intervals[name]
-            )
-        result = result.with_values({name: value}, kind, f"{result.sources[name]}; {text}")
+    for name, interval in confidence_intervals.items():
+        text = "{:g} % interval {:.4g} to {:.4g}".format(100.0 * CONFIDENCE_LEVEL, *interval)
+        result = result.with_values(
+            {name: fit_solution.values[name]}, "calibration", f"{result.sources[name]}; {text}"
+        )
     return result
 
 

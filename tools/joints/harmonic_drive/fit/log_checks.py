@@ -12,6 +12,10 @@ from jointfmu.quantity import Array
 from .log_friction import FittedLogFriction, motor_friction
 from .log_reading import LogSamples, MeasuredLog
 
+MAX_RELATIVE_RATIO_ERROR, MAX_PLAUSIBLE_WIND_UP = 0.005, 0.01
+"""Relative deviation of the ratio of measured angles from that of the drive [1], and wind-up [rad], up to
+which angles of motor and joint count as consistent. Ratios 100 and 101 differ by 0.01; drives wind up by some
+mrad."""
 ALLOWED_MOTOR_OVER_JOINT_TORQUE_RANGE = (1.0 / 3.0, 3.0)
 """Allowed range of the motor torque times ratio over the torque at the joint [1]."""
 MIN_MOTOR_JOINT_TORQUE_CORRELATION = 0.7
@@ -38,6 +42,27 @@ def check_repeated_logs(measured_logs: Sequence[MeasuredLog]) -> None:
             raise ValueError(
                 f"{second.log_path}: has the samples of {first.log_path}; expected each log once"
             )
+
+
+def check_ratio(measured_log: MeasuredLog, drive_parameters: DriveParameters) -> None:
+    """Raise ValueError if the angles of motor and joint in a log contradict the ratio of the drive.
+
+    Their difference must exceed MAX_PLAUSIBLE_WIND_UP and MAX_RELATIVE_RATIO_ERROR: a wind-up is no error.
+    """
+    samples = measured_log.log_samples
+    rows = np.isfinite(samples.motor_angle + samples.q)
+    if np.count_nonzero(rows) < 2:
+        return
+    joint, motor = samples.q[rows], samples.motor_angle[rows]
+    span = float(np.ptp(joint))
+    measured = abs(float(np.polyfit(joint, motor, 1)[0])) if span > 0.0 else np.inf
+    stated = abs(drive_parameters.ratio)
+    error = abs(measured / stated - 1.0)
+    if error > MAX_RELATIVE_RATIO_ERROR and error * span > MAX_PLAUSIBLE_WIND_UP:
+        raise ValueError(
+            f"{measured_log.log_path}: q_motor changes by {measured:.4g} times q, but the ratio of the drive "
+            f"is {stated:g}; state the right drive or --ratio, or check the units of q and q_motor"
+        )
 
 
 def check_torque_scale(

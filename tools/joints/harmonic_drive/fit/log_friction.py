@@ -402,28 +402,56 @@ def refit_without_undetermined_parameters(
     """Repeat the fit of the friction without the parameters that the log does not determine.
 
     A parameter of FRICTION_START_VALUES is dropped if its standard deviation exceeds a factor of
-    UNDETERMINED_DEVIATION_FACTOR and its value in the file fits as well. Returns the fit, names of the fitted
-    parameters, and notes about the others.
+    UNDETERMINED_DEVIATION_FACTOR and its value in the file fits as well. If the values of all these
+    parameters do not fit, only the one with the largest deviation is dropped. Returns the fit, names of the
+    fitted parameters, and notes about the others.
     """
-    undetermined = [
-        n
-        for n in fitted_names
-        if n in FRICTION_START_VALUES
-        and fitted_log.friction_solution.relative_deviations[n] > np.log(UNDETERMINED_DEVIATION_FACTOR)
-    ]
-    determined = [name for name in fitted_names if name not in undetermined]
-    if undetermined and determined:
+    solution = fitted_log.friction_solution
+    deviations = solution.relative_deviations
+    undetermined = sorted(
+        (
+            n
+            for n in fitted_names
+            if n in FRICTION_START_VALUES and deviations[n] > np.log(UNDETERMINED_DEVIATION_FACTOR)
+        ),
+        key=deviations.__getitem__,
+    )
+    for kept in dict.fromkeys((tuple(undetermined), tuple(undetermined[-1:]))):
+        determined = [name for name in fitted_names if name not in kept]
+        if not (kept and determined):
+            continue
         other = fit_friction_to_samples(parameter_file, log_samples, determined, fitted_log.rotor_inertia)
-        increase = np.sum(other.friction_solution.residuals**2) - np.sum(
-            fitted_log.friction_solution.residuals**2
-        )
-        if (
-            increase
-            < len(undetermined) * (MAX_REFIT_RESIDUAL_INCREASE * fitted_log.friction_solution.noise) ** 2
-        ):
-            text = "the log does not determine {}, which keeps its value: the fit is as good with that value"
-            return other, determined, [text.format(name) for name in undetermined]
+        increase = np.sum(other.friction_solution.residuals**2) - np.sum(solution.residuals**2)
+        if increase < len(kept) * (MAX_REFIT_RESIDUAL_INCREASE * solution.noise) ** 2:
+            return (
+                other,
+                determined,
+                [
+                    _describe_kept_parameter(name, other.fitted_drive, log_samples)
+                    for name in fitted_names
+                    if name in kept
+                ],
+            )
     return fitted_log, list(fitted_names), []
+
+
+def _describe_kept_parameter(
+    parameter_name: str, fitted_drive: DriveParameters, log_samples: LogSamples
+) -> str:
+    """Note on a parameter that keeps its value; for load_loss_back, what the log determines instead."""
+    note = (
+        f"the log does not determine {parameter_name}, which keeps its value: the fit is as good with that "
+        "value"
+    )
+    is_load_measured = log_samples.has_joint_torque_sensor or np.isfinite(log_samples.gravity_torque).any()
+    if parameter_name == BACK_DRIVING_LOSS_NAME and not is_load_measured:
+        factor = (1.0 + fitted_drive.load_loss) / (1.0 - fitted_drive.load_loss_back)
+        note += (
+            f". {LOAD_LOSS_NAME}, inertia and gravity depend on this value: the log determines only (1 + "
+            f"{LOAD_LOSS_NAME})/(1 - {parameter_name}) = {factor:.4g}; a column gravity [N.m] or "
+            "link_torque [N.m] determines both losses"
+        )
+    return note
 
 
 def accept_vanishing_friction(fitted_log: FittedLogFriction) -> tuple[FittedLogFriction, list[str]]:
@@ -484,14 +512,60 @@ def fit_with_rotor_inertia(
     fit = fit_friction_to_samples(parameter_file, log_samples, fitted_names, rotor_inertia)
     shifted = fit_friction_to_samples(
         parameter_file, log_samples, fitted_names, rotor_inertia + rotor_inertia_deviation
-    ).friction_solution.values
+    )
+    return replace(
+        fit,
+        friction_solution=_add_independent_error(fit.friction_solution, shifted.friction_solution),
+        rotor_inertia_deviation=rotor_inertia_deviation,
+    )
+
+
+def add_errors_of_kept_parameters(
+    parameter_file: ParameterFile,
+    log_samples: LogSamples,
+    fitted_log: FittedLogFriction,
+    kept_names: Sequence[str],
+) -> FittedLogFriction:
+    """Widen the covariances of a fit by the errors of parameters that keep the value of the file.
+
+    kept_names : names of FRICTION_START_VALUES that the log does not determine. Their standard deviation is a
+                 factor of UNDETERMINED_DEVIATION_FACTOR: a larger one would have been found in the log
+    """
+    names = list(fitted_log.friction_solution.values)
+    for name in kept_names:
+        value = max(parameter_file.values_by_name[name], FRICTION_START_VALUES[name])
+        changed = parameter_file.with_values(
+            {name: UNDETERMINED_DEVIATION_FACTOR * value}, "estimate", "standard deviation"
+        )
+        shifted = fit_friction_to_samples(changed, log_samples, names, fitted_log.rotor_inertia)
+        changes = shifted.linear_unknowns - fitted_log.linear_unknowns
+        fitted_log = replace(
+            fitted_log,
+            friction_solution=_add_independent_error(fitted_log.friction_solution, shifted.friction_solution),
+            linear_unknown_covariance=fitted_log.linear_unknown_covariance + np.outer(changes, changes),
+        )
+    return fitted_log
+
+
+def _add_independent_error(solution: FitSolution, shifted_solution: FitSolution) -> FitSolution:
+    """Add one more error to the covariance of a fit; `jacobian` becomes the (k, k) one of this covariance.
+
+    shifted_solution : the fit, after a shift of its data by one standard deviation of the error
+    """
     changes = np.array(
-        [np.log(shifted[name] / value) for name, value in fit.friction_solution.values.items()]
+        [np.log(shifted_solution.values[name] / value) for name, value in solution.values.items()]
     )
-    wider = replace(
-        fit.friction_solution, covariance=fit.friction_solution.covariance + np.outer(changes, changes)
+    information = solution.jacobian.T @ solution.jacobian / solution.noise**2
+    effect = information @ changes
+    eigenvalues, directions = np.linalg.eigh(
+        information - np.outer(effect, effect) / (1.0 + changes @ effect)  # Sherman and Morrison
     )
-    return replace(fit, friction_solution=wider, rotor_inertia_deviation=rotor_inertia_deviation)
+    root = np.sqrt(np.maximum(eigenvalues, 0.0))[:, None] * directions.T
+    return replace(
+        solution,
+        covariance=solution.covariance + np.outer(changes, changes),
+        jacobian=solution.noise * root,
+    )
 
 
 def _propagate_deviations(

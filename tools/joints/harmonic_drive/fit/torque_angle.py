@@ -23,6 +23,7 @@ from ....inputs.fitting.outcome import (
     FitPlot,
     FitResult,
     build_fitted_file,
+    find_undetermined_parameters,
     make_fit_unknowns,
     make_predictor,
     note_residual_correlation,
@@ -112,7 +113,12 @@ def fit(
         nuisance_count=1,
     )
     result = build_fitted_file(
-        file, solution.values, "calibration", record.data_path.name, describe_torque_range(line)
+        file,
+        solution.values,
+        "calibration",
+        record.data_path.name,
+        describe_torque_range(line),
+        find_undetermined_parameters(solution),
     )
     return make_fit_result(
         record, result, solution, mean_angle_offset(angles(solution.values)), solution.noise * size
