@@ -92,11 +92,11 @@ def test_the_flanks_are_judged_at_the_stated_torque(capsys, tmp_path, torque):
 
 
 def test_bands_of_a_drawn_mesh_have_a_width_and_the_pressure_of_their_force(capsys, tmp_path):
-    """Without --set, K_tooth varies by 15 % (docs/gear_mesh.md), so K does by less. mu has no effect."""
+    """At a fixed gamma, K_tooth varies by 15 % (docs/gear_mesh.md), so K does by less. mu has no effect."""
     path = tmp_path / "mesh.toml"
     made(capsys, *DRAWING, *FACES, path=path)
-    words = ["uncertainty", "--params", str(path), "--samples", "16", "--points", "3", "--json"]
-    assert cli.main(words) == 0
+    words = ["uncertainty", "--params", str(path), "--samples", "16", "--points", "3", "--set", "gamma=0.45"]
+    assert cli.main([*words, "--json"]) == 0
     found, mesh = json.loads(capsys.readouterr().out), load_parameter_file(path).values
     assert list(found["parameters"]) == ["K_tooth"]
     stiffness = found["outputs"]["K"]
