@@ -6,6 +6,7 @@ from clients import needs
 from jointfmu_tools.inputs.surfaces import solve
 from jointfmu_tools.inputs.surfaces.bearing_curve import BearingCurve
 from jointfmu_tools.inputs.surfaces.heights import ArealMap
+from jointfmu_tools.inputs.surfaces.stiffness_table import MaterialPair, interface_points_from_solution
 from oracles.boundary_element import press, slope
 from oracles.machined_surfaces import KINDS, gaussian, plateau, sample_periodic
 
@@ -56,3 +57,15 @@ def test_hardness_limits_the_pressure_and_stiffens_small_motions():
         < soft.max_sub_area_over_mean_stiffness
         <= hard.max_sub_area_over_mean_stiffness
     )
+
+
+def test_stiffness_of_a_contact_that_yields_has_a_wider_range_than_its_sub_areas():
+    """The page of the command names 30 % at the hardness: from there on, a factor of 3 in both directions."""
+    n, side = 128, 1e-3
+    scan = ArealMap(z=0.5e-6 * gaussian(6, n), dx=side / n, dy=side / n, scan_name="scan")
+    for hardness, factor in ((2e9, 3.0), (1e30, 1.0)):
+        found = solve.solve_stiffness(scan, 1e11, hardness)
+        points = interface_points_from_solution([scan], False, MaterialPair(1e11, 0.8, hardness, "m"), "scan")
+        assert (np.max(found.plastic_area_share) > 0.3) == points.is_mostly_plastic == (factor > 1.0)
+        low, high = found.min_sub_area_over_mean_stiffness, found.max_sub_area_over_mean_stiffness
+        assert points.stiffness_factor_range == pytest.approx((low / factor, high * factor))

@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.common.judgement import MAX_STIFFNESS_OVER_ESTIMATE, assess_law_stiffness, find_rms_height
 from jointfmu_tools.common.pressure import find_nominal_pressure_model, judge_joint_stiffness
@@ -11,6 +12,7 @@ from jointfmu_tools.fem.convergence import check_bolt_symmetry
 from jointfmu_tools.inputs.drawing.tables import read_threads
 from jointfmu_tools.inputs.drawing.vdi2230 import describe_stated_bolt, proof_load, stress_area
 from jointfmu_tools.inputs.fields.nodal_result import ContactPressureField
+from jointfmu_tools.joints.bolted_joint.gross_slip import loss_factor
 
 from jointfmu.contact.interface import evaluate_at_pressure, find_validity_violations
 from jointfmu.contact.roughness import PERSSON_GAMMA, predicted_stiffness
@@ -222,6 +224,37 @@ def test_the_specimen_states_its_level_without_a_warning(capsys):
         "h) at 1 MPa, h = 2.84 um"
     )
     assert err == ""
+
+
+def test_the_law_says_that_friction_loops_lose_more_than_eta_t(capsys):
+    """eta_t of zhao2018 is that of spheres; loops of the joint follow from the curve of the interface.
+
+    At mu = 0.5, a shear of 5 % of the force of the bolts is a traction ratio of 0.1.
+    """
+    assert cli.main(["law", "zhao2018", "--pressure", "1e6", "--set", "traction_ratio=0.1"]) == 0
+    (note,) = [line for line in capsys.readouterr().out.splitlines() if line.startswith("eta_t: ")]
+    assert cli.main(["law", "zhao2018", "--pressure", "1e6", "--set", "traction_ratio=0.1", "--json"]) == 0
+    eta_t = json.loads(capsys.readouterr().out)["rows"][0]["eta_t"]
+    joint = BoltedJointSpring.from_joint(BOLTED.with_values({"mu": 0.5}, "user", "test").values)
+    loop = loss_factor(joint, 9e3, 0.05 * 8 * 9e3)
+    assert f"about {loop / eta_t:.1f} times eta_t" in note
+
+
+@pytest.mark.parametrize(("reading", "is_load"), [("corrected", True), ("printed", False)])
+def test_a_law_warns_if_its_columns_are_of_different_contacts(capsys, reading, is_load):
+    """As printed, K_N and A_r of Hu 2023 are of one set of spots under the load p A_r, but F is p A_0."""
+    words = ["law", "hu2023", "--pressure", "96e6", "--set", f"reading={reading}", "--json"]
+    assert cli.main(words) == 0
+    found = json.loads(capsys.readouterr().out)
+    row = found["rows"][0]
+    assert row["F"] == pytest.approx(96e6 * found["parameters"]["A_0"])
+    warned = [text for text in found["warnings"] if "reading = printed" in text]
+    assert (len(warned) == 0) == is_load
+
+
+@pytest.mark.parametrize("name", ["Ra1", "Rq2", "surface.D"])
+def test_an_unknown_name_lists_every_name_that_the_law_accepts(capsys, name):
+    assert name in refused_line(capsys, "law", "roughness", "--pressure", "1e6", "--set", "Rauheit=1e-6")
 
 
 def test_another_surface_has_not_the_roughness_of_the_default(capsys):

@@ -70,3 +70,11 @@ def test_a_ramp_starts_at_the_value_set_for_its_input(native, capsys):
     assert json.loads(printed.out)["columns"]["temperature"][0] == 0.0
     assert printed.err.startswith("warning: temperature = 0 K in place of its start value = 293.15 K")
     assert "steps must lead from 350 to 320" in refused_line(capsys, *words, "temperature=350")
+
+
+@pytest.mark.parametrize(("end", "is_doubtful"), [("2.5", True), ("2500", False)])
+def test_a_load_in_the_wrong_unit_is_doubted(words, capsys, end, is_doubtful):
+    """The nominal value of the force is 1 kN: 2.5 N is the value of a user who means 2.5 kN."""
+    place = words.index("--to") + 1
+    assert cli.main([*words[:place], end, *words[place + 1 :]]) == 0
+    assert ("usual size of f, 1000 N; values are in N" in capsys.readouterr().err) == is_doubtful

@@ -69,6 +69,14 @@ def test_a_wrong_stiffness_is_looked_for_where_corners_overlap(drive_file, capsy
     assert "check the value and the unit of K1" in refused_line(capsys, "report", drive_file)
 
 
+def test_a_built_fmu_is_no_parameter_file(capsys, tmp_path):
+    path = tmp_path / "BoltedJoint.fmu"
+    path.write_bytes(b"PK\x03\x04\xff\xfe")
+    line = refused_line(capsys, "report", path)
+    assert "is a built FMU; expected the parameter file" in line
+    assert "BoltedJoint," in line  # the name, which is accepted
+
+
 def test_a_similar_command_is_suggested(capsys):
     with pytest.raises(SystemExit):
         jointfmu_main("bild")

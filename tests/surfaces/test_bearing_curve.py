@@ -118,6 +118,16 @@ def test_a_plateau_gets_the_law_table_and_gaussian_heights_the_law_roughness(cap
     assert file.ranges["table.factor"] == bearing_curve.SURFACE_OVER_LAW_STIFFNESS_RANGE
 
 
+def test_a_joint_that_is_not_the_users_is_named(capsys, scan, tmp_path):
+    """With --joint, all but the surface is of the shipped joint; with --params, of the user's file."""
+    out, z = tmp_path / "joint.toml", gaussian(5, 128)
+    first = surface(capsys, scan(z), "--side", "both", "--joint", "bolted_joint", "--out", out)
+    second = surface(capsys, scan(z), "--side", "both", "--params", out, "--out", tmp_path / "second.toml")
+    named = [[text for text in one["warnings"] if "shipped joint" in text] for one in (first, second)]
+    assert "box specimen of Zhao 2018" in named[0][0]
+    assert named[1] == []
+
+
 def surface_points(capsys, scan, tmp_path):
     """Stiffness in the file for `new --interface-table`."""
     table = tmp_path / "points.csv"

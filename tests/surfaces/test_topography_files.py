@@ -156,7 +156,8 @@ def test_form_is_removed(area, form, order):
 @pytest.mark.parametrize(
     ("name", "content", "says"),
     [
-        ("none.csv", None, "none.csv: is not a file"),
+        ("none.csv", None, "none.csv: does not exist"),
+        ("xy.csv", "x [um],y [um]\n" + "0,0\n4,0\n0,4\n4,4\n", "three columns: x, y and the heights z"),
         ("empty.csv", "", "empty.csv: is not a surface scan: the file is empty"),
         ("words.csv", "hello 1 2\n", "words.csv: is not a surface scan: a text of 2 numbers"),
         (

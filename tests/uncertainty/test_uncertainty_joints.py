@@ -216,13 +216,27 @@ def test_zero_outputs_are_left_out_and_parameters_without_effect_are_named(tmp_p
     assert cli.main([*given, *few, "--plot", str(plot)]) == 0
     text = capsys.readouterr().out
     assert text.count("C_zz") == text.count("zero at all loads: C_zz\n") == 1
-    assert plot.read_text().count('<g id="axes_') == 11
+    assert "slip_force [N]\n     preload [N]  parameter file  no band" in text  # mu sets it, not H
+    assert text.count("no band") == 2  # and the opening load
+    assert plot.read_text().count('<g id="axes_') == 9  # of 11 outputs, without those two
     assert (
         cli.main(["uncertainty", "gear_contact", "--set", "mu=0.1..0.3", "traction_ratio=0..0.5", *few]) == 0
     )
     text = capsys.readouterr().out
     assert "varied: mu = 0.1..0.3, traction_ratio = 0..0.5: no output depends on it\n" in text
     assert "Sobol" not in text
+
+
+def test_bands_of_a_truncated_distribution_are_warned_of(capsys):
+    """A normal distribution of a positive parameter with a large spread has samples that the law refuses."""
+    few = ["--samples", "64", "--points", "2", "--json"]
+    warned = []
+    for spread in ("80%", "5%"):
+        assert cli.main(["uncertainty", "gear_contact", "--set", f"sigma_y=normal({spread})", *few]) == 0
+        found = json.loads(capsys.readouterr().out)
+        warned.append(any("truncated distributions" in text for text in found["warnings"]))
+        assert warned[-1] == (found["refused"]["count"] > 0)
+    assert warned == [True, False]
 
 
 def test_at_one_load(tmp_path, capsys):
@@ -251,11 +265,14 @@ def test_study_file(tmp_path, capsys):
     ("arguments", "words"),
     [
         (["--set", "surface.D=2.4..2.6"], "JOINT or --params FILE is missing"),
-        (
-            ["harmonic_drive"],
-            "no parameter has a distribution; expected NAME=LOW..HIGH or a study file",
-        ),
-        (["harmonic_drive", "--set", "surface.X=1..2"], "unknown name 'surface.X', allowed are ratio, "),
+        (["harmonic_drive"], "no parameter has a distribution; expected NAME=LOW..HIGH or a study file"),
+        (["harmonic_drive", "--set", "qqq=1..2"], "unknown name 'qqq', allowed are ratio, "),
+        (["bolted_joint", "--set", "Mu=0.1..0.2"], "unknown name 'Mu'; did you mean mu"),
+        (["bolted_joint", "--set", "Rq1=1e-6..2e-6"], "the law of the file does not use the roughness"),
+        (["bolted_joint", "--set", "mu=+-20"], "write +-20%"),
+        (["bolted_joint", "--set", "mu=normal(20)"], "as in 20%"),
+        (["bolted_joint", "--set", "surface.G=lognormal(12nm, 1.2)"], "not a number: write 1.2e-08"),
+        (["bolted_joint", "--set", "mu=interval"], "states no interval of mu; state mu=LOW..HIGH"),
         (["harmonic_drive", "--set", "surface.D=2.4..3.1"], "surface.D = 3.1 is outside (2, 3)"),
         (["harmonic_drive", "--set", "surface.D=normal(3.5, 1)"], "surface.D = 3.5 is outside (2, 3)"),
         (["harmonic_drive", "--set", "traction=1..2"], "traction = 1..2: is a named choice"),

@@ -56,7 +56,7 @@ def test_no_distribution(text):
         ("1..2..3", "has 3 numbers, expected 2"),
         ("cauchy(1, 2)", "there is no distribution 'cauchy'"),
         ("normal(1, 0)", "standard deviation = 0 is outside (0, inf)"),
-        ("normal(1)", "has 1 numbers, expected 2"),
+        ("normal(1)", "expected 2 numbers, or a percentage"),
         ("normal(2%)", "a percentage needs a value before it: VALUE+-PERCENT%"),
         ("4+-0%", "0 % is outside (0, inf)"),
         ("lognormal(1, 0.5)", "factor = 0.5 is outside (1, inf)"),

@@ -434,7 +434,7 @@ def test_an_interval_is_that_of_the_file_that_the_fmu_carries(fmu, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--input", "tau", "--set", "mu=interval"], "mu = interval: its source states none"),
+        (["--input", "tau", "--set", "mu=interval"], "mu = interval: the parameter file states no interval"),
         (["--input", "tau", "--set", "surface.X=1..2"], "unknown name 'surface.X', allowed are tau"),
         (["--input", "torque", "--set", "surface.D=2.4..2.6"], "unknown input 'torque', allowed are tau"),
         (["--input", "tau", "--set", "tau=1..2"], "tau is the input of the ramp"),

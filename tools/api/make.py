@@ -75,6 +75,11 @@ def load(source: str | Path) -> Joint:
     name = str(source)
     if name in MODELS or name in KINDS:
         return create_joint(load_default(MODELS[name].joint if name in MODELS else name))
+    if Path(source).suffix == ".fmu":
+        raise ValueError(
+            f"{name}: is a built FMU; expected the parameter file (.toml) that it was built from, or a name "
+            f"without folder and suffix: {', '.join(MODELS)}"
+        )
     if Path(source).suffix == ".toml" or Path(source).is_file():
         return create_joint(load_file(source))
     try:

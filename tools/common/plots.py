@@ -15,6 +15,7 @@ from jointfmu.files.writing import write_bytes
 from jointfmu.quantity.units import UNITS, display_unit
 
 if TYPE_CHECKING:
+    from matplotlib.axis import Axis
     from matplotlib.figure import Figure
 
 BLUE, RED, GREEN, GREY = "#1f5fa8", "#c1442e", "#2f7d4f", "#777777"
@@ -121,6 +122,29 @@ def _close_in_notebook(figure: "Figure", **_: object) -> dict[str, str]:
     if "inline" in get_backend():
         pyplot.close(figure)
     return {}
+
+
+def set_log_axis_ticks(axis: "Axis") -> None:
+    """Set tick labels of a logarithmic axis: at 1, 2, 5 in each decade below two decades, else at decades.
+
+    Below a factor of 3 between the ends of the axis, the labels are those of a linear axis.
+    """
+    from matplotlib.ticker import (
+        LogFormatterSciNotation,
+        LogLocator,
+        MaxNLocator,
+        NullFormatter,
+        ScalarFormatter,
+    )
+
+    low, high = axis.get_view_interval()
+    if high < 3.0 * low:
+        axis.set_major_locator(MaxNLocator(4))
+        axis.set_major_formatter(ScalarFormatter())
+    elif high < 100.0 * low:
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axis.set_major_formatter(LogFormatterSciNotation(minor_thresholds=(10, 10)))
+    axis.set_minor_formatter(NullFormatter())
 
 
 def save_figure(figure: "Figure", picture_path: str | Path) -> None:

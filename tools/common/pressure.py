@@ -23,7 +23,9 @@ class NominalPressureModel:
     """Nominal contact pressure of a kind of joint as a function of its load.
 
     load_variable                : name of the input or output that is the load
-    default_load                 : parameter set -> load [SI] that is used if the user states none
+    stated_load                  : parameter file -> load [SI] that the file states, 0 if it states none;
+                                   None: the start value of the input `load_variable`
+    default_load                 : parameter set -> load [SI] that is used if the file states none
     mean_pressure                : (parameter set, load) -> nominal pressure [Pa] at which the stiffness is
                                    judged
     peak_pressure                : (parameter set, load) -> greatest nominal pressure [Pa]
@@ -35,6 +37,7 @@ class NominalPressureModel:
     """
 
     load_variable: str
+    stated_load: Callable[[ParameterFile], float] | None = None
     default_load: Callable[..., float]
     mean_pressure: Callable[..., float]
     peak_pressure: Callable[..., float]
@@ -68,10 +71,10 @@ def judge_joint_stiffness(
 ) -> Plausibility:
     """Compare the stiffness of a joint under loads with the estimate from roughness, and list warnings.
 
-    joint_loads : values of `NominalPressureModel.load_variable` [SI]; None: the start value in the file, or,
-                  if it is zero, the default load. At the default load the stiffness is only compared with the
-                  estimate from roughness. With None, the upper end of the range in the file is also checked
-                  against the load capacity
+    joint_loads : values of `NominalPressureModel.load_variable` [SI]; None: the load that the file states,
+                  or, if it states none, the default load. At the default load the stiffness is only compared
+                  with the estimate from roughness. With None, the upper end of the range in the file is also
+                  checked against the load capacity
     """
     kind = KINDS[parameter_file.joint]
     nominal = find_nominal_pressure_model(kind)
@@ -82,8 +85,13 @@ def judge_joint_stiffness(
     if joint_loads is None and (ends := parameter_file.ranges.get(f"inputs.{nominal.load_variable}")):
         name = f"upper end of the range of {nominal.load_variable}"
         range_warnings = warn_overload(name, ends[1], capacity)
-    if joint_loads is None and parameter_file.start_value(nominal.load_variable) > 0.0:
-        joint_loads = [parameter_file.start_value(nominal.load_variable)]
+    if joint_loads is None:
+        stated = (
+            nominal.stated_load(parameter_file)
+            if nominal.stated_load
+            else parameter_file.start_value(nominal.load_variable)
+        )
+        joint_loads = [stated] if stated > 0.0 else None
     law, h, limits = (
         kind.extract_law(parameter_file.values),
         find_rms_height(parameter_file),

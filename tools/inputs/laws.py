@@ -8,6 +8,8 @@ import numpy as np
 
 from jointfmu.contact.interface import HardnessLimitedLaw
 from jointfmu.contact.laws import LAWS, ROUGHNESS_LAW_NAME
+from jointfmu.contact.laws.hu2023 import Hu2023
+from jointfmu.contact.laws.zhao2018 import Zhao2018
 from jointfmu.contact.roughness import HEIGHT_FIELDS, check_heights, combined_height
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, load_default, load_parameter_file
@@ -47,7 +49,11 @@ def build_law_parameters(
     if parameter_file is None and not find_joints_with_law(law_name):  # a law that no joint has
         return build_parameter_set(LAWS[law_name], law_settings)
     parameter_file = parameter_file or load_default(find_default_joint(law_name), law_name)
-    names = {name for name, _ in flatten_fields(LAWS[law_name])}
+    names = {name: None for name, _ in flatten_fields(LAWS[law_name])}
+    sources = (*HEIGHT_FIELDS, *FRACTAL_PROFILE_PARAMETERS) if law_name == ROUGHNESS_LAW_NAME else ()
+    if unknown := [name for name in law_settings if name not in {*names, *sources}]:
+        instead = f"; in place of h also {', '.join(n for n in sources if n != 'h')}" if sources else ""
+        raise ValueError(f"unknown name {unknown[0]!r}; allowed are {', '.join(names)}{instead}")
     law_of = KINDS[parameter_file.joint].extract_law
     file_law, differs = law_of(parameter_file.values), parameter_file.law != law_name
     known = flatten_parameters(file_law)
@@ -63,6 +69,22 @@ def build_law_parameters(
         )
         law_settings = derive_roughness_settings(fractal, stated, known["longest_wave"], law_settings)
     return build_parameter_set(LAWS[law_name], {k: v for k, v in known.items() if k in names} | law_settings)
+
+
+def explain_law_outputs(law_parameters: Any) -> tuple[list[str], list[str]]:
+    """Notes on the printed outputs of a law, and warnings about outputs that do not belong together."""
+    notes, warnings = [], []
+    if isinstance(law_parameters, Zhao2018):
+        notes.append(
+            "eta_t: loop of single spheres (Mindlin); friction loops of a joint follow from the curve of the "
+            "complete interface, and their loss factor is about 2.7 times eta_t (docs/validity_friction.md)"
+        )
+    if isinstance(law_parameters, Hu2023) and law_parameters.reading == "printed":
+        warnings.append(
+            "reading = printed: the pressure is the load over the real area. K_N, K_T and A_r are of one set "
+            "of spots, whose load is pressure A_r; F = pressure A_0 is not this load (docs/errata.md)"
+        )
+    return notes, warnings
 
 
 def derive_roughness_settings(

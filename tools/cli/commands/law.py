@@ -17,6 +17,7 @@ from ...inputs.laws import (
     LAW_OUTPUT_COLUMNS,
     LAW_OUTPUT_UNITS,
     build_law_parameters,
+    explain_law_outputs,
     find_joints_with_law,
     find_surface_rms_height,
     load_law_file,
@@ -62,10 +63,11 @@ def _run_law(args: argparse.Namespace) -> CommandResult:
     judgement = assess_law_stiffness(law, np.ravel(state["pressure"]).tolist(), h)
     heads = [f"{name} [{LAW_OUTPUT_UNITS[name]}]" for name in names]
     cells = [heads, *(["-" if row[n] is None else f"{row[n]:.6g}" for n in names] for row in rows)]
+    notes, warnings = explain_law_outputs(law)
     return CommandResult(
         json_document={"law": args.law, "parameters": flatten_parameters(law), "rows": rows},
-        output_lines=align_columns(cells, 0),
-        stiffness_judgement=judgement,
+        output_lines=[*align_columns(cells, 0), *notes],
+        stiffness_judgement=judgement.prepend_warnings(warnings),
     )
 
 

@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
 RAMP_OPTIONS, LOOP_OPTIONS = ("to", "step"), ("about", "shape", "points", "cycles", "output")
 """Options of a ramp, and options of load cycles in addition to --loop."""
+MIN_RAMP_END_OVER_NOMINAL = 0.01
+"""End of a ramp over the nominal value of its input [1] below which the command warns: kN in place of N."""
 MAX_PRINTED_RAMP_POINTS = 24
 """Largest number of points of a ramp that are printed on a terminal [1]."""
 
@@ -115,6 +117,20 @@ def _print_messages(fmu_messages: Iterable[str], driven_input: str, input_unit: 
             print(f"warning: {message}", file=sys.stderr)
 
 
+def _warn_small_ramp(fmu_path: Path, input_name: str, end_value: float) -> None:
+    """Warn if a ramp ends far below the usual size of its input: the nominal value of the FMU, if above 1."""
+    from ...run.host import read_description
+
+    (variable,) = (v for v in read_description(fmu_path).modelVariables if v.name == input_name)
+    nominal, unit = float(variable.nominal or 1.0), variable.unit or "1"
+    if nominal > 1.0 and abs(end_value) < MIN_RAMP_END_OVER_NOMINAL * nominal:
+        print(
+            f"warning: to = {end_value:g} {unit} is below {100.0 * MIN_RAMP_END_OVER_NOMINAL:g} % of the "
+            f"usual size of {input_name}, {nominal:g} {unit}; values are in {unit}: check the unit",
+            file=sys.stderr,
+        )
+
+
 def _run_ramp(args: argparse.Namespace) -> CommandResult:
     """Run an FMU along a load ramp, and print or write its outputs."""
     result = ramp.run_ramp(args.fmu, args.input, args.to, args.step, dict(args.settings))
@@ -124,6 +140,7 @@ def _run_ramp(args: argparse.Namespace) -> CommandResult:
         print(
             f"note: --to = {args.to:g} {unit} is beyond the range of the law; check its unit", file=sys.stderr
         )
+    _warn_small_ramp(args.fmu, args.input, args.to)
     overload = _find_overload(args.fmu, dict(args.settings) | result.variable_columns)
     result = _select_columns(result, args.input, args.columns)
     if args.csv:
@@ -302,7 +319,5 @@ def _draw_loops(
     right.set_ylim(0.0, 1.1 * size * float(np.max(stiffness)))
     if np.all(loss > 0.0):
         middle.set(xscale="log", yscale="log")
-        shown = np.unique(np.linspace(0, amplitude.size - 1, min(amplitude.size, 4)).round().astype(int))
-        ticks = (x_size * amplitude[shown]).tolist()
-        middle.set_xticks(ticks, [f"{tick:.3g}" for tick in ticks])
-        middle.set_xticks([], minor=True)
+        plots.set_log_axis_ticks(middle.xaxis)
+        plots.set_log_axis_ticks(middle.yaxis)

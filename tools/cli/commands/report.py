@@ -18,7 +18,8 @@ def add_command(command_parsers: SubParsers) -> None:
         make,
         "file",
         Path,
-        "parameter file (TOML), or name of an FMU, a joint or a drive of jointfmu catalogue",
+        "parameter file (TOML), or name of an FMU (as in BoltedJoint, no file), of a joint, or of a drive of "
+        "jointfmu catalogue",
     )
     declare_argument(
         make,

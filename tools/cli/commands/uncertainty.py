@@ -14,7 +14,7 @@ from jointfmu.parameters import ParameterFile, load_default, load_parameter_file
 
 from ...common import columns
 from ...common.options import format_option_flag
-from ...common.pressure import judge_joint_stiffness
+from ...common.pressure import find_nominal_pressure_model, judge_joint_stiffness
 from ..command import (
     CommandResult,
     Parser,
@@ -28,6 +28,7 @@ from ..outputs import declare_output
 
 if TYPE_CHECKING:
     from ...studies.uncertainty.problem import UncertaintyStudy
+    from ...studies.uncertainty.propagate import UncertaintyBands
     from ...studies.uncertainty.runs import SampledOutputs, StudyExecution
 
 DISTRIBUTIONS_HELP = (
@@ -41,6 +42,8 @@ DISTRIBUTIONS_HELP = (
 
 DEFAULT_JOINT_SAMPLE_COUNT, DEFAULT_FMU_SAMPLE_COUNT, DEFAULT_RAMP_POINT_COUNT = 16384, 256, 201
 """Default number of samples of a joint and of an FMU, and of points of a joint's ramp."""
+MAX_REFUSED_SHARE = 0.01
+"""Share of refused samples [1] above which the command warns: that of the outermost quantile of the bands."""
 SWEEP_DEPRECATION_NOTE = (
     "jointfmu sweep: deprecated, and removed in the next major version; use jointfmu uncertainty FMU"
 )
@@ -200,6 +203,8 @@ def _define_fmu_study(args: argparse.Namespace, fmu: Path) -> "UncertaintyStudy"
 
 def _run_uncertainty(args: argparse.Namespace) -> CommandResult:
     """Run `jointfmu uncertainty`: propagate uncertain parameters through a joint or an FMU."""
+    import numpy as np
+
     from ...studies.uncertainty import journal, problem, propagate, report, study
     from ...studies.uncertainty.sweep import format_quantiles_csv
     from ...studies.uncertainty.worker import JointRampEvaluator
@@ -220,12 +225,10 @@ def _run_uncertainty(args: argparse.Namespace) -> CommandResult:
         distributions = study.merge_settings(args.study, args.settings)
         task = problem.define_joint_study(file, distributions, args.to, points)
         A, B = propagate.draw_independent_point_sets(task, count, args.seed)
-        assert isinstance(task.run_evaluator, JointRampEvaluator)
-        judgement = judge_joint_stiffness(task.run_evaluator.parameter_file, report.select_table_loads(task))
     indices = None
     with _open_study_folder(task, count, args.seed, args.out):
         bands = propagate.compute_bands(task, A, execution)
-        if not is_fmu and len(task.uncertain_parameters) > 1 and bands.has_output_scatter:
+        if not is_fmu and len(task.uncertain_parameters) > 1 and bands.scattered_outputs:
             rows = min(count, max(1024, count // 32))
             indices = propagate.compute_sensitivity(task, bands, A[:rows], B[:rows], execution)
     if args.out:
@@ -241,6 +244,14 @@ def _run_uncertainty(args: argparse.Namespace) -> CommandResult:
         report.draw_bands_and_indices(
             args.plot, bands, indices, f"{task.ramped_input.name} [{task.ramped_input.unit}]"
         )
+    if isinstance(task.run_evaluator, JointRampEvaluator):
+        file = task.run_evaluator.parameter_file
+        nominal = find_nominal_pressure_model(KINDS[file.joint])
+        loads = report.select_table_loads(task)
+        if nominal and nominal.load_variable != task.ramped_input.name:  # gear mesh: force over the angle
+            output = bands.nominal_outputs[nominal.load_variable]
+            loads = np.interp(loads, task.loads, output).tolist()
+        judgement = judge_joint_stiffness(file, loads).prepend_warnings(_warn_truncation(bands))
     document, lines = (
         report.study_to_json(task, bands, indices),
         [report.format_study_table(task, bands, indices)],
@@ -250,6 +261,18 @@ def _run_uncertainty(args: argparse.Namespace) -> CommandResult:
         document |= counts
         lines.append(line)
     return CommandResult(json_document=document, output_lines=lines, stiffness_judgement=judgement)
+
+
+def _warn_truncation(uncertainty_bands: "UncertaintyBands") -> list[str]:
+    """Warn if the law refuses so many samples that the quantiles of the bands are of other distributions."""
+    count, refused = uncertainty_bands.sample_count, uncertainty_bands.refused_samples.refused_count
+    if refused <= MAX_REFUSED_SHARE * count:
+        return []
+    return [
+        f"{refused} of {count} samples ({100.0 * refused / count:.0f} %) are outside the range of the law, "
+        "and left out; so the bands are of truncated distributions; state distributions within the range, as "
+        "lognormal(20%) for a positive parameter"
+    ]
 
 
 def _count_stored_runs(

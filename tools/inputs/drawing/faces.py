@@ -11,6 +11,7 @@ import numpy as np
 from jointfmu.contact import roughness
 from jointfmu.contact.laws import ROUGHNESS_LAW_NAME, TABLE_LAW_NAME
 from jointfmu.contact.surface import ElasticConstants, contact_modulus, contact_shear_modulus
+from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Number
 
@@ -214,7 +215,8 @@ def add_face_parameters(
         parameter_sheet.add_drawing_number("H", parse_quantity("hardness", drawing_options["hardness"]))
     if drawing_options["mu"] is None:
         parameter_sheet.add_parameter("mu", DEFAULT_MU, "estimate", DEFAULT_MU_SOURCE)
-        parameter_sheet.set_parameter_range("mu", *DEFAULT_MU_LIMITS)
+        if "mu" not in KINDS[parameter_sheet.joint_kind].models[0].fixed_parameters:  # gears have no shear
+            parameter_sheet.set_parameter_range("mu", *DEFAULT_MU_LIMITS)
     else:
         parameter_sheet.add_drawing_number("mu", parse_quantity("mu", drawing_options["mu"]))
     parameter_sheet.add_parameter("traction_ratio", 0.1, "estimate", "vibration far below slip")

@@ -130,7 +130,10 @@ def fit_regular_grid(
         )
     gaps = np.diff(positions)
     if positions[-1] == positions[0] or (not allow_repeats and gaps.min() <= 0.0):
-        raise ValueError(f"{scan_path}: {axis_name} has repeated values; give every position once")
+        raise ValueError(
+            f"{scan_path}: {axis_name} has repeated values; give every position once"
+            + ("" if allow_repeats else " (a map needs three columns: x, y and the heights z)")
+        )
     offset = positions - positions[0]
     step = float(offset[-1] / (positions.size - 1))
     index = np.arange(positions.size)

@@ -61,7 +61,8 @@ def read_heights(
     scan_path = Path(scan_path)
     check_regular_file(scan_path, "height data")
     if not scan_path.is_file():
-        raise ValueError(f"{scan_path}: is not a file; expected height data")
+        what = "is not a file" if scan_path.exists() else "does not exist"
+        raise ValueError(f"{scan_path}: {what}; expected a file with the heights of a surface")
     option_units = {"x": unit_x or length_unit, "z": unit_z or length_unit}
     options = ScanOptions(option_units["x"], option_units["z"], point_spacing, missing_value)
     for name, value in {"unit": length_unit, "unit_x": unit_x, "unit_z": unit_z}.items():
@@ -163,8 +164,8 @@ def _read_instrument_file(
         import SurfaceTopography.Exceptions
     except ImportError:
         raise ValueError(
-            f"{scan_path}: the package SurfaceTopography is missing, needed to read instrument files; "
-            "install it with: pip install 'jointfmu[surface]'"
+            f"{scan_path}: is no table of heights (CSV, text); if it is the file of an instrument, install "
+            "the package that reads such files: pip install 'jointfmu[surface]'"
         ) from None
     try:
         quiet = io.StringIO()

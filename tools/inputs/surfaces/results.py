@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -321,8 +321,8 @@ def draw_identification(identified_surface: SurfaceIdentification, picture_path:
         for panel in axes.values():
             panel.set_xscale("log")
             panel.set_yscale("log")
-            _set_log_axis_ticks(panel.xaxis)
-            _set_log_axis_ticks(panel.yaxis)
+            plots.set_log_axis_ticks(panel.xaxis)
+            plots.set_log_axis_ticks(panel.yaxis)
             panel.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.14))
 
 
@@ -355,17 +355,6 @@ def _draw_fractal_result(axes: "Axes", fractal_result: FractalResult) -> None:
     axes.plot(x, y, "o", ms=3.5, mfc="none", color=colour, alpha=0.5)
     axes.plot(x[inside], y[inside], "o", ms=3.5, color=colour)
     axes.plot(x[inside], law[inside], "-", lw=1.2, color=colour, label=label)
-
-
-def _set_log_axis_ticks(axis: Any) -> None:
-    """Set tick labels of a logarithmic axis: at 1, 2, 5 in each decade below two decades, else at decades."""
-    from matplotlib.ticker import LogFormatterSciNotation, LogLocator, NullFormatter
-
-    low, high = axis.get_view_interval()
-    if high < 100.0 * low:
-        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-        axis.set_major_formatter(LogFormatterSciNotation(minor_thresholds=(10, 10)))
-    axis.set_minor_formatter(NullFormatter())
 
 
 def _plot_data(fractal_result: FractalResult) -> tuple[Array, Array, Array]:

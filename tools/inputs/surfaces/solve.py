@@ -118,8 +118,8 @@ def solve_stiffness(gap_heights: ArealMap, contact_modulus: float, hardness: flo
     use = count >= MIN_CONTACT_POINTS
     if use.sum() < 2:
         raise ValueError(
-            f"{gap_heights.scan_name}: fewer than two pressures have {MIN_CONTACT_POINTS} points in "
-            "contact; use a scan of more points"
+            f"{gap_heights.scan_name}: fewer than two pressures have a converged solution with "
+            f"{MIN_CONTACT_POINTS} points in contact; use a scan of more points"
         )
     parts_stiffness = np.array([[k for k, _, _ in one] for one in contacts[1:]])[:, use]
     ratio = np.exp(np.log(parts_stiffness) - np.mean(np.log(parts_stiffness), axis=0))
@@ -161,7 +161,7 @@ def _press_on_half_space(
     """Press a grid of heights on a half-space, at several pressures, by boundary elements.
 
     Returns for each pressure: stiffness per area [Pa/m], share of the contact at the hardness, points in
-    contact.
+    contact. The number of points is 0 if the solver did not converge.
     """
     try:
         from ContactMechanics import PeriodicFFTElasticHalfSpace
@@ -197,7 +197,11 @@ def _press_on_half_space(
         contact_mask = force > 0.0
         flowing = force >= (1.0 - 1e-6) * limit
         count = int(contact_mask.sum())
-        yield _bonded_stiffness(half_space, contact_mask) / area, float(flowing.sum() / count), count
+        yield (
+            _bonded_stiffness(half_space, contact_mask) / area,
+            float(flowing.sum() / count),
+            count if result.success else 0,
+        )
 
 
 def _bonded_stiffness(half_space: Any, contact_mask: PointMask) -> float:

@@ -16,6 +16,10 @@ from jointfmu.quantity import Array
 from .bearing_curve import SURFACE_OVER_LAW_STIFFNESS_RANGE, BearingCurve
 from .heights import ArealMap
 
+MAX_PLASTIC_AREA_SHARE = 0.3
+"""Share of the real contact area at the hardness [1] from which the stiffness depends on the finest waves."""
+PLASTIC_STIFFNESS_FACTOR = 3.0
+"""Factor [1] by which the stiffness is then uncertain in both directions (docs/surfaces.md)."""
 INTERFACE_TABLE_FILE_KIND = FileKind("table of an interface", (".csv",))
 """Kind of the file with points that `surface --table` writes."""
 
@@ -37,6 +41,11 @@ class InterfacePoints:
     stiffness_factor_range: tuple[float, float]
     points_source: str
     plastic_area_share: Array = field(default_factory=lambda: np.zeros(0))
+
+    @property
+    def is_mostly_plastic(self) -> bool:
+        """Whether so much of the contact yields, at any pressure, that the finest waves set the stiffness."""
+        return bool(np.max(self.plastic_area_share, initial=0.0) >= MAX_PLASTIC_AREA_SHARE)
 
     def to_csv(self) -> str:
         """Format the points as the CSV file that `new --interface-table` reads."""
@@ -105,20 +114,28 @@ def interface_points_from_solution(
     found = solve_stiffness(
         compute_gap_heights(scans), material_pair.contact_modulus, material_pair.softer_hardness
     )
+    limits = found.min_sub_area_over_mean_stiffness, found.max_sub_area_over_mean_stiffness
     source = (
         f"boundary elements on {scan_names}, {1e6 * found.grid_spacing:.3g} um between points: small "
         f"motions, E* = {material_pair.contact_modulus:.4g} Pa, hardness "
         f"{material_pair.softer_hardness:.4g} Pa of {material_pair.material_names}; range: scatter of four "
         "sub-areas"
     )
-    limits = found.min_sub_area_over_mean_stiffness, found.max_sub_area_over_mean_stiffness
-    return InterfacePoints(
+    points = InterfacePoints(
         found.nominal_pressure,
         found.normal_stiffness,
         material_pair.shear_stiffness_ratio,
         limits,
         source,
         plastic_area_share=found.plastic_area_share,
+    )
+    if not points.is_mostly_plastic:
+        return points
+    factor = PLASTIC_STIFFNESS_FACTOR
+    return replace(
+        points,
+        stiffness_factor_range=(limits[0] / factor, limits[1] * factor),
+        points_source=f"{source}, times {factor:g} in both directions, because much of the contact yields",
     )
 
 

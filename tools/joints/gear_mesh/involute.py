@@ -1,8 +1,11 @@
 """Involute gear pair: geometry with profile shift (ISO 21771) and tooth stiffness (ISO 6336-1, method B)."""
 
+import re
 from dataclasses import dataclass
 
 import numpy as np
+
+from jointfmu.parameters import ParameterFile
 
 YOUNG_MODULUS_OF_STEEL = 206e9
 """Young's modulus [Pa] of steel wheels for which ISO 6336-1 states the stiffness."""
@@ -32,6 +35,21 @@ MAX_CENTRE_DISTANCE_ERROR_OVER_MODULE = 0.01
 """Largest difference between a stated and the computed centre distance, over the module [1]."""
 MESH_DAMPING_RATIO = 0.06
 """Damping ratio [1] of the oscillation of both wheels, as solid discs, on the mesh stiffness."""
+
+
+TOOTH_STIFFNESS_SPREAD = 0.15
+"""Relative difference [1] of published formulas for the stiffness of the teeth (docs/gear_mesh.md)."""
+
+
+def describe_patch_load(wheel_1_torque: str) -> str:
+    """Source text of the nominal area: Hertz's contact under a torque on wheel 1, a number in N.m as text."""
+    return f"Hertz's line contact at the pitch point, one pair under {wheel_1_torque} N.m of wheel 1"
+
+
+def working_force(parameter_file: ParameterFile) -> float:
+    """Normal force of the mesh [N] at the torque that the source of `A_0` states; 0 if it states none."""
+    stated = re.search(describe_patch_load(r"([\d.e+-]+)"), parameter_file.sources.get("A_0", ""))
+    return float(stated[1]) / float(parameter_file.values_by_name["r_b1"]) if stated else 0.0
 
 
 @dataclass(frozen=True, slots=True)

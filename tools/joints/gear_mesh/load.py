@@ -1,6 +1,7 @@
 """Gear mesh under load: curves for other solvers, and pressure on the flanks of one tooth pair."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,8 +10,9 @@ from jointfmu.joints.gear_mesh import KIND
 from jointfmu.joints.gear_mesh.spring import MeshParameters, tabulate_tooth_pair
 from jointfmu.mechanics.curve import Curve, tabulate_approach
 
-from ...common.pressure import FLANK_PRESSURE_MODEL
+from ...common.pressure import FLANK_PRESSURE_MODEL, uniform_pressure
 from ...exchange.export.exports import JointExports, LoadCurveExport
+from .involute import working_force
 
 if TYPE_CHECKING:
     from ...exchange.export.tables import LoadTable
@@ -50,5 +52,13 @@ EXPORTS = JointExports(
 """Exports that the gear mesh offers."""
 
 
-NOMINAL_PRESSURE = FLANK_PRESSURE_MODEL
-"""Nominal contact pressure of the flanks over the normal force."""
+NOMINAL_PRESSURE = replace(
+    FLANK_PRESSURE_MODEL,
+    stated_load=working_force,
+    mean_pressure=lambda mesh, force: uniform_pressure(mesh, force / mesh.contact_ratio),
+    peak_pressure=uniform_pressure,
+)
+"""Nominal contact pressure of the flanks over the normal force of the mesh.
+
+The mean number of pairs shares the force; the greatest pressure is that of one pair with the complete force.
+"""

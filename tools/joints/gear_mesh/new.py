@@ -13,7 +13,13 @@ from ...inputs.drawing import faces
 from ...inputs.drawing.faces import FACE_OPTIONS, hertz_line_contact
 from ...inputs.drawing.part import DrawingOptions, NewJoint, NewJointCommand, ParameterSheet
 from ...inputs.drawing.quantities import parse_quantity, parse_quantity_value
-from .involute import MESH_DAMPING_RATIO, STANDARD_DEDENDUM_OVER_MODULE, InvoluteGearPair
+from .involute import (
+    MESH_DAMPING_RATIO,
+    STANDARD_DEDENDUM_OVER_MODULE,
+    TOOTH_STIFFNESS_SPREAD,
+    InvoluteGearPair,
+    describe_patch_load,
+)
 
 
 def make_joint(drawing_options: DrawingOptions) -> NewJoint:
@@ -36,8 +42,7 @@ def make_joint(drawing_options: DrawingOptions) -> NewJoint:
     hertz = hertz_line_contact(load, wheels.face_width, wheels.relative_curvature, contact_modulus(*sides))
     tooth_stiffness = wheels.tooth_stiffness(moduli, torque)
     _add_mesh_parameters(sheet, wheels, drawing_options, tooth_stiffness)
-    text = f"Hertz's line contact at the pitch point, one pair under {torque:g} N.m of wheel 1"
-    sheet.add_parameter("A_0", float(hertz.area), "derived", text)
+    sheet.add_parameter("A_0", float(hertz.area), "derived", describe_patch_load(f"{torque:g}"))
     file = sheet.build_parameter_file(
         f"wheels of module {drawing_options['module']}, {wheels.tooth_counts[0]:g} to "
         f"{wheels.tooth_counts[1]:g} teeth"
@@ -56,13 +61,17 @@ def make_joint(drawing_options: DrawingOptions) -> NewJoint:
         ),
         "contact_ratio": (wheels.contact_ratio, "1", "mean number of pairs in contact over the full width"),
         "overlap_ratio": (wheels.overlap_ratio, "1", "mesh cycles over which a helix spreads the contact"),
-        "K_tooth": (file.values_by_name["K_tooth"], "N/m", "bending of one pair (ISO 6336-1)"),
+        "K_tooth": (
+            file.values_by_name["K_tooth"],
+            "N/m",
+            "one pair with smooth flanks: bending and flattening (ISO 6336-1)",
+        ),
         **faces.derive_rms_height(file),
         "K": (stiffness, "N/m", "mean stiffness of the mesh at this load"),
         "c_gamma": (
             wheels.mesh_stiffness(file.values_by_name["K_tooth"]),
             "N/m",
-            "the same by ISO 6336-1, to compare",
+            "mean stiffness of ISO 6336-1, with another definition (docs/gear_mesh.md)",
         ),
         "c_prime": (
             c_prime,
@@ -165,8 +174,15 @@ def _add_mesh_parameters(
         parameter_sheet.add_drawing_number(
             "backlash", parse_quantity("backlash", drawing_options["backlash"])
         )
-    parameter_sheet.add_parameter(
-        "K_tooth", tooth_stiffness, "derived", "single stiffness c' of ISO 6336-1, method B, times the width"
+    text = (
+        "single stiffness c' of ISO 6336-1, method B, times the width; range: published formulas differ by "
+        f"{100 * TOOTH_STIFFNESS_SPREAD:g} % (docs/gear_mesh.md)"
+    )
+    parameter_sheet.add_parameter("K_tooth", tooth_stiffness, "derived", text)
+    parameter_sheet.set_parameter_range(
+        "K_tooth",
+        (1.0 - TOOTH_STIFFNESS_SPREAD) * tooth_stiffness,
+        (1.0 + TOOTH_STIFFNESS_SPREAD) * tooth_stiffness,
     )
     tips = "addendum of one module" if gear_pair.stated_tip_radii is None else "stated tip diameters"
     text = f"ISO 21771, {tips}, transverse"

@@ -1,18 +1,20 @@
 """Statement of an uncertainty study: parameters with distributions, load ramp, evaluation of the runs."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
+from jointfmu.contact.roughness import HEIGHT_FIELDS
 from jointfmu.joints import KINDS
 from jointfmu.joints.model import Variable
 from jointfmu.parameters import ParameterFile, format_parameter_file
 from jointfmu.quantity import Array, Interval, find_problem, flatten_fields
 from jointfmu.quantity.refusal import InputRefusal
 
+from ...common.names import find_similar_names
 from .curves import LoadCurves, find_load_curves
 from .journal import sha256_hex
 from .study import UncertainParameter, draw_samples, is_relative_distribution, split_settings
@@ -98,8 +100,8 @@ def define_joint_study(
     lists = {name for name, item in declared.items() if "series" in item.metadata}
     settable = [*(base.keys() - lists), curves.ramped_input.name]
     if unknown := [name for name in study_settings if name not in settable]:
-        allowed = ", ".join(name for name in [*declared, curves.ramped_input.name] if name in settable)
-        raise ValueError(f"unknown name {unknown[0]!r}, allowed are {allowed}")
+        names = [name for name in [*declared, curves.ramped_input.name] if name in settable]
+        raise ValueError(f"unknown name {unknown[0]!r}{_suggest_names(unknown[0], names)}")
     stated = {name for name in parameter_file.ranges if name in base}
     if _INPUTS_SECTION_PREFIX + curves.ramped_input.name in parameter_file.ranges and ramp_end is None:
         stated.add(curves.ramped_input.name)
@@ -166,6 +168,17 @@ def define_joint_study(
     )
 
 
+def _suggest_names(unknown_name: str, known_names: Sequence[str]) -> str:
+    """Text after an unknown name: h in place of a roughness, else similar names, else all names."""
+    if unknown_name.removeprefix("roughness.") in HEIGHT_FIELDS:
+        if "h" in known_names:
+            return "; the roughness acts through the parameter h: vary h, as in h=+-20%"
+        return "; the law of the file does not use the roughness"
+    if similar := find_similar_names(unknown_name, known_names):
+        return f"; did you mean {' or '.join(similar)}?"
+    return f", allowed are {', '.join(known_names)}"
+
+
 def _format_load_interval(load_curves: LoadCurves, parameter_file: ParameterFile) -> str:
     """Range of the load as text LOW..HIGH, less the part of the load that the joint loses (by embedding).
 
@@ -206,8 +219,8 @@ def resolve_interval_setting(
     source = parameter_file.sources.get(parameter_name, "")
     if not (match := _INTERVAL_PATTERN.search(source)):
         raise ValueError(
-            f"{parameter_name} = {INTERVAL_SETTING}: its source states none: {source!r}; expected '... "
-            "interval LOW to HIGH'"
+            f"{parameter_name} = {INTERVAL_SETTING}: the parameter file states no interval of "
+            f"{parameter_name}; state {parameter_name}=LOW..HIGH, or write range = [LOW, HIGH] into the file"
         )
     return f"{match[1]}..{match[2]}"
 

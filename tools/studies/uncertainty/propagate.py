@@ -70,12 +70,13 @@ class UncertaintyBands:
         ]
 
     @property
-    def has_output_scatter(self) -> bool:
-        """Whether any output differs between samples by more than the round-off of single precision."""
-        return any(
-            np.any(np.ptp(q, axis=0) > SINGLE_PRECISION_ROUNDING * np.abs(q[0]))
-            for q in self.quantiles.values()
-        )
+    def scattered_outputs(self) -> list[str]:
+        """Names of the outputs that differ between samples by more than the round-off of single precision."""
+        return [
+            name
+            for name, q in self.quantiles.items()
+            if np.any(np.ptp(q, axis=0) > SINGLE_PRECISION_ROUNDING * np.abs(q[0]))
+        ]
 
 
 def compute_bands(

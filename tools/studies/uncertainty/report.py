@@ -1,5 +1,6 @@
 """Results of an uncertainty propagation as table, CSV, JSON and plots."""
 
+import math
 import re
 from collections.abc import Sequence
 from pathlib import Path
@@ -15,6 +16,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
+PLOTS_PER_ROW = 3
+"""Largest number of outputs side by side in a plot [1]."""
 MAX_PRINTED_LOADS = 6
 """Largest number of loads in the printed table [1]."""
 
@@ -136,11 +139,18 @@ def format_study_table(
     for name in uncertainty_bands.nonzero_outputs:
         head = f"{uncertainty_study.ramped_input.name} [{uncertainty_study.ramped_input.unit}]"
         lines.append(f"{name} [{uncertainty_bands.output_units[name]}]")
-        lines.append("".join(f"{x:>16}" for x in (head, "parameter file", "5 %", "50 %", "95 %")))
+        is_scattered = name in uncertainty_bands.scattered_outputs
+        heads = (
+            ("5 %", "50 %", "95 %")
+            if is_scattered
+            else ("  no band: the varied parameters do not change it",)
+        )
+        lines.append("".join(f"{x:>16}" for x in (head, "parameter file", *heads)))
         for j in load_indices:
             row = [uncertainty_bands.loads[j], uncertainty_bands.nominal_outputs[name][j]]
-            row += [uncertainty_bands.quantiles[name][i, j] for i in quantile_indices.values()]
-            lines.append("".join(f"{x:16.5g}" for x in row))
+            if is_scattered:
+                row += [uncertainty_bands.quantiles[name][i, j] for i in quantile_indices.values()]
+            lines.append("".join(f"{x + 0.0:16.5g}" for x in row))  # + 0.0: no -0
         lines.append("")
     if sensitivity is not None:
         lines += _format_sobol_table(uncertainty_study, sensitivity, uncertainty_bands.nonzero_outputs)
@@ -155,7 +165,7 @@ def format_study_table(
         if name in uncertainty_bands.nonzero_outputs
     ]
     lines.append(
-        f"varied: {varied}{'' if uncertainty_bands.has_output_scatter else ': no output depends on it'}"
+        f"varied: {varied}{'' if uncertainty_bands.scattered_outputs else ': no output depends on it'}"
     )
     if zero := [
         name for name in uncertainty_bands.output_units if name not in uncertainty_bands.nonzero_outputs
@@ -213,22 +223,28 @@ _PARAMETER_COLOURS = (
 def draw_bands_and_indices(
     plot_path: Path, uncertainty_bands: UncertaintyBands, sensitivity: RampSensitivity | None, load_label: str
 ) -> None:
-    """Draw bands and Sobol' indices over the load, one column of plots for each output that is not zero.
+    """Draw bands and Sobol' indices over the load, for each output that the varied parameters change.
 
-    Solid lines are total indices, dashed lines first-order indices.
+    A row has at most PLOTS_PER_ROW outputs; the indices are below the bands. Solid lines are total indices,
+    dashed lines first-order indices.
     """
-    names = uncertainty_bands.nonzero_outputs
-    rows = 1 if sensitivity is None or uncertainty_bands.loads.size == 1 else 2
-    with plots.open_figure(plot_path, (4.2 * len(names), 3.6 * rows)) as figure:
-        grid = figure.subplots(rows, len(names), squeeze=False)
-        for column, name in enumerate(names):
+    names = uncertainty_bands.scattered_outputs or uncertainty_bands.nonzero_outputs
+    height = 1 if sensitivity is None or uncertainty_bands.loads.size == 1 else 2
+    columns = min(len(names), PLOTS_PER_ROW)
+    rows = height * math.ceil(len(names) / PLOTS_PER_ROW)
+    with plots.open_figure(plot_path, (4.2 * columns, 3.6 * rows)) as figure:
+        grid = figure.subplots(rows, columns, squeeze=False)
+        for empty in grid[rows - height :, len(names) - columns * (rows // height - 1) :].flat:
+            empty.remove()
+        for i, name in enumerate(names):
+            row, column = height * (i // columns), i % columns
             label = f"{name} [{uncertainty_bands.output_units[name]}]"
             if uncertainty_bands.loads.size == 1:
-                _draw_distribution(grid[0, column], uncertainty_bands, name, label)
+                _draw_distribution(grid[row, column], uncertainty_bands, name, label)
                 continue
-            _draw_bands(grid[0, column], uncertainty_bands, name, label, load_label)
+            _draw_bands(grid[row, column], uncertainty_bands, name, label, load_label)
             if sensitivity is not None:
-                _draw_indices(grid[1, column], sensitivity, name, load_label, has_legend=column == 0)
+                _draw_indices(grid[row + 1, column], sensitivity, name, load_label, has_legend=i == 0)
 
 
 def _draw_bands(

@@ -32,10 +32,14 @@ from scipy.stats import qmc
 
 from jointfmu.parameters import list_entries, read_document
 from jointfmu.quantity import Array
+from jointfmu.quantity.units import unit_size
+
+from ...inputs.drawing.reading import NUMBER_WITH_UNIT_PATTERN
 
 DISTRIBUTION_FORMS = (
     "VALUE, LOW..HIGH, VALUE+-PERCENT%, loguniform(LOW, HIGH), normal(MEAN, SD), "
-    "lognormal(MEDIAN, FACTOR), triangular(LOW, MODE, HIGH)"
+    "lognormal(MEDIAN, FACTOR), triangular(LOW, MODE, HIGH), all in SI units; relative to the file's value: "
+    "+-PERCENT%, normal(PERCENT%), lognormal(PERCENT%)"
 )
 """Allowed forms of the text of a distribution, for error messages."""
 _DISTRIBUTION_CALL_PATTERN = re.compile(r"(\w+)\((.*)\)")
@@ -87,6 +91,8 @@ def _parse_scipy_distribution(distribution_text: str, parameter_file_value: floa
         return _make_uniform_distribution(*_parse_numbers(distribution_text.split(".."), 2))
     if "+-" in distribution_text:
         middle, _, spread = distribution_text.partition("+-")
+        if not middle.strip() and not _is_percent(spread):
+            raise ValueError(f"a half width without a value before it is relative: write +-{spread.strip()}%")
         m = _parse_number(middle) if middle.strip() else _require_file_value(parameter_file_value)
         half_width = abs(m) * _parse_percent(spread) if _is_percent(spread) else _parse_number(spread)
         return _make_uniform_distribution(m - half_width, m + half_width)
@@ -163,7 +169,8 @@ def _parse_centre_and_spread(
     if len(argument_texts) == 1 and _is_percent(argument_texts[0]):
         return _require_file_value(parameter_file_value), argument_texts[0]
     if len(argument_texts) != 2:
-        raise ValueError(f"has {len(argument_texts)} numbers, expected 2")
+        hint = f", or a percentage, as in {argument_texts[0]}%" if len(argument_texts) == 1 else ""
+        raise ValueError(f"expected 2 numbers{hint}")
     return _parse_number(argument_texts[0]), argument_texts[1]
 
 
@@ -188,10 +195,21 @@ def _parse_number(number_text: str) -> float:
     try:
         value = float(number_text)
     except ValueError:
-        raise ValueError(f"{number_text.strip()!r} is not a number") from None
+        raise ValueError(
+            f"{number_text.strip()!r} is not a number{_suggest_si_number(number_text)}"
+        ) from None
     if not math.isfinite(value):
         raise ValueError(f"{value:g} is not finite")
     return value
+
+
+def _suggest_si_number(number_text: str) -> str:
+    """Suggestion to write a number with a unit as a number in SI units; empty if the text is none."""
+    number = NUMBER_WITH_UNIT_PATTERN.fullmatch(number_text.strip())
+    try:
+        return f": write {float(number[1]) * unit_size(number[2]):.12g}" if number else ""
+    except ValueError:
+        return ""
 
 
 def _is_percent(number_text: str) -> bool:

@@ -28,7 +28,7 @@ class GearWheelParameters:
     teeth1: float = quantity_field("1", "number of teeth of wheel 1", ge=1.0, is_integer=True)
     backlash: float = quantity_field("m", "backlash along the line of action", ge=0.0)
     K_tooth: float = quantity_field(
-        "N/m", "bending stiffness of one tooth pair, in series with its flanks", gt=0.0
+        "N/m", "stiffness of one tooth pair with smooth flanks, in series with their roughness", gt=0.0
     )
     contact_ratio: float = quantity_field("1", "mean number of tooth pairs in contact", ge=1.0, lt=3.0)
     engagement: float = quantity_field(

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from jointfmu.contact.laws import ROUGHNESS_LAW_NAME, TABLE_LAW_NAME
 from jointfmu.contact.roughness import PERSSON_GAMMA, combined_height, predicted_stiffness
 from jointfmu.joints import KINDS
-from jointfmu.parameters import ParameterFile
+from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.quantity import Number
 
 from ....common.judgement import Plausibility
@@ -22,7 +22,11 @@ from ....inputs.surfaces.joint_parameters import (
     undetermined_reason,
 )
 from ....inputs.surfaces.results import Estimate, FractalResult, SurfaceIdentification
-from ....inputs.surfaces.stiffness_table import InterfacePoints
+from ....inputs.surfaces.stiffness_table import (
+    MAX_PLASTIC_AREA_SHARE,
+    PLASTIC_STIFFNESS_FACTOR,
+    InterfacePoints,
+)
 from ...command import CommandResult
 from . import synthesize
 
@@ -74,7 +78,7 @@ def results_to_json(
         "level": judged["level"],
         "written": str(args.out) if args.out else None,
         "warnings": [
-            *collect_surface_warnings(identified_surface, parameter_file, args),
+            *collect_surface_warnings(identified_surface, parameter_file, stiffness_points, args),
             *judged["warnings"],
         ],
     }
@@ -191,15 +195,31 @@ def list_reported_joints(args: argparse.Namespace, parameter_file: ParameterFile
 
 
 def collect_surface_warnings(
-    identified_surface: SurfaceIdentification, parameter_file: ParameterFile | None, args: argparse.Namespace
+    identified_surface: SurfaceIdentification,
+    parameter_file: ParameterFile | None,
+    stiffness_points: InterfacePoints | None,
+    args: argparse.Namespace,
 ) -> list[str]:
-    """Collect warnings about an identified surface and the parameter file written for it."""
+    """Collect warnings about an identified surface, its stiffness, and the parameter file written for it."""
     lines = list(identified_surface.warnings)
+    if stiffness_points and stiffness_points.is_mostly_plastic:
+        lines.append(
+            f"up to {100.0 * stiffness_points.plastic_area_share.max():.0f} % of the contact is at the "
+            f"hardness: from {100.0 * MAX_PLASTIC_AREA_SHARE:g} % on, the stiffness depends on waves below "
+            f"the solved grid, so the range is widened by a factor of {PLASTIC_STIFFNESS_FACTOR:g}; measure "
+            "the joint for a narrower range (docs/surfaces.md)"
+        )
     if parameter_file and parameter_file.law == ROUGHNESS_LAW_NAME and not identified_surface.is_gaussian:
         ratio = 1.0 / identified_surface.tail_over_rms_height
         lines.append(
             f"the heights are not Gaussian: the stiffness is about {ratio:.2g} times that of the law "
             f"{ROUGHNESS_LAW_NAME}; --table FILE writes it for jointfmu new --interface-table"
+        )
+    if args.out and args.joint and not args.params:
+        lines.append(
+            f"everything but the surface is of the shipped joint {load_default(args.joint).name!r}: sizes, "
+            "material, friction; for your joint, make a file with jointfmu new "
+            f"{args.joint.replace('_', '-')}, and state it by --params"
         )
     if not parameter_file or not args.out or parameter_file.law == TABLE_LAW_NAME:
         return lines
@@ -246,6 +266,8 @@ def build_surface_result(
         lines += _format_boundary_element_table(stiffness_points)
     if len(surface_heights) == 2:
         lines.append("equivalent surface of the pair: structure functions and spectra added")
+    elif identified_surface.contact_side == "both":
+        lines.append("D and G of both sides together: structure function and spectrum of the scan doubled")
     lines += [f"repaired in {name}: {repair}" for name, repair in identified_surface.scan_repairs]
     heads = ("method", "direction", "range [m]", "D, profile", "G, profile [m]", "D_s, surface", "G_s [m]")
     lines += align_columns(
@@ -263,7 +285,7 @@ def build_surface_result(
     prefix = f"law {parameter_file.law}: " if parameter_file else ""
     texts = [
         *(f"{prefix}{text}" for text in judgement.warnings),
-        *collect_surface_warnings(identified_surface, parameter_file, args),
+        *collect_surface_warnings(identified_surface, parameter_file, stiffness_points, args),
     ]
     return CommandResult(
         json_document=results_to_json(
@@ -315,7 +337,7 @@ def _format_boundary_element_table(stiffness_points: InterfacePoints) -> list[st
     low, high = stiffness_points.stiffness_factor_range
     return [
         *align_columns([heads, *rows]),
-        f"boundary elements; sub-areas: {low:.2f} to {high:.2f} times their mean",
+        f"boundary elements; range of the stiffness: {low:.2f} to {high:.2f} times these values",
         "not in the scan: waves longer than the scan, flatness, and waves shorter than the solved grid; "
         "short waves raise the stiffness of contacts at the hardness",
     ]
