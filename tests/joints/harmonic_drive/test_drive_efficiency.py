@@ -352,7 +352,7 @@ def test_uncertainty_takes_the_interval_of_the_source(tmp_path):
     number = catalogue.find_drive("CSG-25-100").known_numbers["starting_torque"]
     assert found.support_interval == pytest.approx([end + 0.01 for end in number.estimate_interval], rel=1e-3)
     assert load_again(file, tmp_path).sources == file.sources
-    with pytest.raises(ValueError, match="ratio = interval: its source states none"):
+    with pytest.raises(ValueError, match="ratio = interval: the parameter file states no interval of ratio"):
         define_joint_study(file, {"ratio": "interval"}, None, 5)
 
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from jointfmu.files.outputs import PICTURE_FILE
 from jointfmu.files.writing import write_text
+from jointfmu.joints.model import EXTRAPOLATION_WARNING
 
 from ...common import columns, plots
 from ...common.options import format_option_flag
@@ -135,7 +136,7 @@ def _run_ramp(args: argparse.Namespace) -> CommandResult:
     """Run an FMU along a load ramp, and print or write its outputs."""
     result = ramp.run_ramp(args.fmu, args.input, args.to, args.step, dict(args.settings))
     _print_messages(result.log_messages, args.input, result.variable_units[args.input])
-    if args.to is not None and any("is outside [" in message for message in result.log_messages):
+    if args.to is not None and any(EXTRAPOLATION_WARNING in message for message in result.log_messages):
         unit = result.variable_units[args.input]
         print(
             f"note: --to = {args.to:g} {unit} is beyond the range of the law; check its unit", file=sys.stderr
