@@ -97,7 +97,8 @@ def make_unit_definitions(listed_variables: Sequence[ListedVariable]) -> Element
 def make_model_structure(fmu_model: Model, parameter_variability: str, fmi_version: str = "2") -> Element:
     """Make the XML element ModelStructure: outputs, derivatives and initial unknowns with their dependencies.
 
-    In FMI 2.0 the index of a variable equals its value reference.
+    FMI 2.0 refers to a variable by its index in ModelVariables, from 1. In these FMUs, this index equals the
+    value reference.
 
     parameter_variability : FMI variability of all parameters, one of PARAMETER_VARIABILITIES
     fmi_version           : version of FMI, "2" or "3"

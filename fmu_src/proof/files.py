@@ -163,7 +163,7 @@ def _declare_experiment(
     experiment: ReferenceExperiment,
     stored_files: Mapping[str, bytes],
 ) -> dict[str, bytes]:
-    """Add an experiment to the XML file of its purpose, and return its new data files {path: content}.
+    """Add an experiment to an XML file of reference experiments; return its new data files {path: content}.
 
     stored_files : files of other experiments; equal input series are not stored twice
     """

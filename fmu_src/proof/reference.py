@@ -41,7 +41,7 @@ class Stimulus:
 
     @property
     def input_time_series(self) -> TimeSeries:
-        """Time series of the driven input, with steps half-way between the sampling instants."""
+        """Time series of the driven input; its value jumps half-way between the sampling instants."""
         values = np.repeat(self.input_levels, 2)[1:]
         times = [float(f"{0.5 * i * self.sampling_interval:.12g}") for i in range(values.size)]
         return TimeSeries(np.array(times), {self.input_name: values})

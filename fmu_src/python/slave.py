@@ -239,7 +239,7 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
     def evaluate_with_history(
         self, input_values: dict[str, float]
     ) -> tuple[Mapping[str, Any], History | None]:
-        """Evaluate the outputs at given inputs, and the history variables (None: the joint has none)."""
+        """Return the outputs at given inputs, and the new history variables (None: the joint has none)."""
         if self.model.advance is None:
             return self.model.evaluate(self.get_tabulated_joint(), input_values), None
         return self.model.advance(

@@ -40,7 +40,7 @@ def compute_or_load_array(
         digest.update(f"\0{argument.shape} ".encode() + np.ascontiguousarray(argument, "<f8").tobytes())
 
     def compute_bytes() -> bytes:
-        """Compute the array as bytes for the store: a line with its shape, then its float64 values."""
+        """Compute the array and encode it for the store: a line with its shape, then its float64 values."""
         result = compute_array()
         return f"{' '.join(map(str, result.shape))}\n".encode() + result.astype("<f8").tobytes()
 

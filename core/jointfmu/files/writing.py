@@ -168,7 +168,10 @@ def check_writable(output_path: Path, output_folder: Path) -> None:
 def _create_temporary_file(output_path: str | Path, target_path: Path) -> Path:
     """Create an empty temporary file in the folder of `target_path`, and this folder if necessary.
 
-    Raises ValueError, which names `output_path`, if the file cannot be created.
+    target_path : file that will be replaced, with links resolved
+    output_path : the same file as the user states it, for the error message
+
+    Raises ValueError if the file cannot be created.
     """
     try:
         target_path.parent.mkdir(parents=True, exist_ok=True)

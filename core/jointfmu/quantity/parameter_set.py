@@ -114,9 +114,9 @@ def _named_fields(cls: Any) -> tuple[tuple[Field[Any], str], ...]:
 
 @lru_cache(maxsize=256)
 def _selected_fields(cls: Any, parameter_names: tuple[str, ...]) -> dict[str, Field[Any]]:
-    """Declared fields {structured name: field} of a parameter set class, cached.
+    """Fields {structured name: field} of a parameter set class with the selected alternatives only, cached.
 
-    parameter_names : stated parameters, which select one alternative of each group
+    parameter_names : stated parameters, which select one alternative of each group of fields
     """
     return dict(flatten_fields(cls, parameter_names=parameter_names))
 

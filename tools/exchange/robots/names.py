@@ -9,7 +9,10 @@ from jointfmu.parameters import ParameterFile, format_parameter_file
 
 
 def make_identifier(original_name: str) -> str:
-    """Convert a name to a valid identifier of letters, digits and _ that is no keyword or device name."""
+    """Convert a name to an identifier of letters, digits and _.
+
+    It is no keyword of a programming language, and no file name that Windows reserves (CON, NUL).
+    """
     return re.sub(
         r"\W",
         "_",

@@ -46,10 +46,10 @@ MIN_RELATIVE_DISPLACEMENT_SCALE = 0.03
 
 
 def shear_combinations(state_motions: Array) -> Array:
-    """Coefficients (w, s) [1] of w linear combinations of s states of the joint, all of them in shear.
+    """Coefficients (w, s) [1] of w linear combinations of s states of the joint with tangential motion.
 
-    The combinations are the states along x, along y and about z alone (the same number for each axis), then
-    sums and differences of two of these axes.
+    The combinations are the states that move along x only, along y only and about z only (equally many of
+    each kind), then sums and differences of states of two kinds.
 
     state_motions : (s, 6) [m, rad] of the states
     """

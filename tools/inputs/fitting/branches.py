@@ -123,23 +123,23 @@ class MeasuredLoops:
         slopes = [self._initial_slope(k) for k in range(self.branch_start_motion.size)]
         return max(slopes, key=lambda slope: (slope.is_resolved, slope.min_stiffness))
 
-    def _initial_slope(self, branch_number: int) -> "InitialSlope":
+    def _initial_slope(self, branch_index: int) -> "InitialSlope":
         """Stiffness right after the turning point of a branch.
 
         Only the rising part of the branch is used: a slipped part would lower the slope.
         """
-        distance, change = self.branch_curve(branch_number)
+        distance, change = self.branch_curve(branch_index)
         rising = int(np.argmax(change >= RISING_OVER_BRANCH_FORCE_CHANGE * np.max(change)))
         if rising >= MIN_RISING_BRANCH_SAMPLES:
             coefficients, covariance = np.polyfit(distance[:rising], change[:rising], 2, cov=True)
             slope, deviation = float(coefficients[1]), float(np.sqrt(covariance[1, 1]))
-            return InitialSlope(branch_number, rising, slope, slope - MIN_STIFFNESS_DEVIATIONS * deviation)
-        deviation = float(self.branch_start_motion_standard_deviation[branch_number])
+            return InitialSlope(branch_index, rising, slope, slope - MIN_STIFFNESS_DEVIATIONS * deviation)
+        deviation = float(self.branch_start_motion_standard_deviation[branch_index])
         secant, min_secant = (
             float(change[rising] / (distance[rising] + factor * deviation))
             for factor in (1.0, MIN_STIFFNESS_DEVIATIONS)
         )
-        return InitialSlope(branch_number, rising, secant, min_secant)
+        return InitialSlope(branch_index, rising, secant, min_secant)
 
     def rest_stiffness_over_law(self, hysteresis_law: HysteresisLaw, residual_scale: Array) -> float:
         """Stiffness after a reversal over that of a law [1], both by the initial slope at the same samples.
@@ -151,8 +151,8 @@ class MeasuredLoops:
             return np.nan
         law = hysteresis_law.with_rest_position(self.rest_position(hysteresis_law, residual_scale))
         _, _, residual = self.fit_turning_points(law, residual_scale)
-        distance, measured = self.branch_curve(best.branch_number)
-        _, computed = replace(self, joint_force=self.joint_force - residual).branch_curve(best.branch_number)
+        distance, measured = self.branch_curve(best.branch_index)
+        _, computed = replace(self, joint_force=self.joint_force - residual).branch_curve(best.branch_index)
         rising = slice(best.rising_samples)
         slopes = [np.polyfit(distance[rising], change[rising], 2)[1] for change in (measured, computed)]
         return float(slopes[0] / slopes[1])
@@ -170,9 +170,9 @@ class MeasuredLoops:
                 plateaus.append(0.5 * float(np.mean(change[flat])))
         return float(np.median(plateaus)) if plateaus else None
 
-    def _flat_end_samples(self, branch_number: int) -> NDArray[np.bool_]:
+    def _flat_end_samples(self, branch_index: int) -> NDArray[np.bool_]:
         """Mask (n) of the samples of a branch on its flat end; all false if its end is not flat."""
-        distance, change = self.branch_curve(branch_number)
+        distance, change = self.branch_curve(branch_index)
         end = distance >= (1.0 - FLAT_END_SHARE_OF_MOTION) * np.max(distance)
         if np.count_nonzero(end) < MIN_FLAT_SAMPLES:
             return np.zeros_like(end)
@@ -202,7 +202,7 @@ class MeasuredLoops:
             )
             steps.append(
                 SlipStep(
-                    branch_number=number,
+                    branch_index=number,
                     first_flat_end_samples=before,
                     second_flat_end_samples=after,
                     force_step=float(np.mean(self.joint_force[after]) - np.mean(self.joint_force[before])),
@@ -242,11 +242,11 @@ class MeasuredLoops:
                 return float(np.sum(np.diff(x)[slopes < limit])), float(y[softest + 1])
         return None
 
-    def branch_curve(self, branch_number: int) -> tuple[Array, Array]:
+    def branch_curve(self, branch_index: int) -> tuple[Array, Array]:
         """Distance (n) from the turning point and force change (n) in this direction, of one branch."""
-        samples = self.branch_of_sample == branch_number
-        shift = self.joint_motion[samples] - self.branch_start_motion[branch_number]
-        change = self.joint_force[samples] - self.branch_start_force[branch_number]
+        samples = self.branch_of_sample == branch_index
+        shift = self.joint_motion[samples] - self.branch_start_motion[branch_index]
+        change = self.joint_force[samples] - self.branch_start_force[branch_index]
         return np.abs(shift), np.copysign(1.0, shift[-1]) * change
 
     def fit_turning_points(
@@ -339,7 +339,7 @@ class MeasuredLoops:
 
         start_motion : fitted motion (branches) at the turning points
         """
-        k = slip_step.branch_number
+        k = slip_step.branch_index
 
         def mean_force_change(sample_indices: NDArray[np.int64], branch_start_motion: float) -> float:
             """Force change of the law since the start of a branch, averaged over samples [N or N.m]."""
@@ -394,7 +394,7 @@ class InitialSlope:
     min_stiffness  : lower bound of `stiffness`, MIN_STIFFNESS_DEVIATIONS standard deviations below
     """
 
-    branch_number: int
+    branch_index: int
     rising_samples: int
     stiffness: float
     min_stiffness: float
@@ -409,7 +409,7 @@ class InitialSlope:
 class SlipStep:
     """Force step between the flat ends of two consecutive branches: twice the friction force at gross slip.
 
-    branch_number : index of the second branch
+    branch_index : index of the second branch
     first_flat_end_samples, second_flat_end_samples : indices of the samples on both flat ends
     force_step : difference of the mean forces, second minus first
     force_step_standard_deviation : standard deviation of `force_step` by the scatter of the samples
@@ -418,7 +418,7 @@ class SlipStep:
         both branches
     """
 
-    branch_number: int
+    branch_index: int
     first_flat_end_samples: NDArray[np.int64]
     second_flat_end_samples: NDArray[np.int64]
     force_step: float

@@ -132,7 +132,7 @@ def compute_bolt_forces(
 ) -> Array:
     """Bolt forces (m, bolts) [N] under the first m of increasing tensile forces along z (n) [N].
 
-    Ends at the first force at which a bolt exceeds MAX_BOLT_OVER_TIGHTENING_FORCE, or at which the
+    Ends before the first force at which a bolt exceeds MAX_BOLT_OVER_TIGHTENING_FORCE, or at which the
     equilibrium is not found.
     """
     load = ExternalLoad(joint_spring, preload, bending_moment, direction=2)

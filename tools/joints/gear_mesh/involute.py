@@ -130,9 +130,9 @@ class InvoluteGearPair:
     def tip_radii(self) -> tuple[float, float]:
         """Radii of both tip circles [m].
 
-        Without stated tip radii r + m_n (1 + x - k), where k = x_1 + x_2 - (a - r_1 - r_2)/m_n shortens the
-        tips, so that the tip clearance is that of the basic rack: r reference radii, m_n normal module, x
-        profile shift coefficients, a centre distance.
+        Tip radii that are not stated are r + m_n (1 + x - k). Here k = x_1 + x_2 - (a - r_1 - r_2)/m_n
+        shortens the tips, so that the tip clearance is that of the basic rack: r reference radii, m_n normal
+        module, x profile shift coefficients, a centre distance.
         """
         if self.stated_tip_radii is not None:
             return self.stated_tip_radii

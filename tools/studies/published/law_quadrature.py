@@ -344,7 +344,7 @@ def _evaluate_yu2022(parameters: LawParameters, largest_area: float) -> dict[str
         return a / (f1 * pi * radius(a) * yield_deformation(a))
 
     def stage_end_area(max_area_ratio: float) -> float:
-        """Area [m2] of the spots at the limit of the elastic or of an elastic-plastic stage.
+        """Area [m2] of one spot at the end of the elastic stage or of an elastic-plastic stage.
 
         max_area_ratio : `area_over_yield_area` at this limit
         """

@@ -154,9 +154,9 @@ def compute_trivial_guesses(published_points: Sequence[PublishedPoint]) -> dict[
             raise ValueError(
                 f"{requesting_ids[-1]}: guess from {point_id!r}, allowed are calibration points and guesses"
             )
-        return evaluate_guess(point, point.guess, (*requesting_ids, point_id))
+        return evaluate_trivial_guess(point, point.guess, (*requesting_ids, point_id))
 
-    def evaluate_guess(
+    def evaluate_trivial_guess(
         published_point: PublishedPoint, trivial_guess: TrivialGuess, requesting_ids: tuple[str, ...]
     ) -> float:
         """Trivial guess of a published number by a rule, for example the power law through two points."""
@@ -173,4 +173,4 @@ def compute_trivial_guesses(published_points: Sequence[PublishedPoint]) -> dict[
             return a + more[0] - more[1]
         return a * more[0] / more[1] if trivial_guess.rule == "proportion" else a
 
-    return {p.id: evaluate_guess(p, p.guess, (p.id,)) for p in published_points if p.guess}
+    return {p.id: evaluate_trivial_guess(p, p.guess, (p.id,)) for p in published_points if p.guess}

@@ -260,7 +260,7 @@ def _make_ramp_loads(
 
     parameter_set  : parameter set
     single_load    : the load that was set, or None
-    uncertain_load : distribution of the load, or None
+    uncertain_load : distribution of the load, or None; its ends must be within the tabulated law
 
     Raises ValueError for a load outside of the tabulated law, or a wrong ramp.
     """

@@ -204,7 +204,7 @@ def _parse_number(number_text: str) -> float:
 
 
 def _suggest_si_number(number_text: str) -> str:
-    """Suggestion to write a number with a unit as a number in SI units; empty if the text is none."""
+    """Suggestion to write a number with a unit as a number in SI units; empty for other texts."""
     number = NUMBER_WITH_UNIT_PATTERN.fullmatch(number_text.strip())
     try:
         return f": write {float(number[1]) * unit_size(number[2]):.12g}" if number else ""

@@ -20,7 +20,8 @@ def format_fitted_system(
 
     system_path   : the original system file
     fitted_values : parameters of all components, with origins and sources
-    fitted_units  : {COMPONENT.PARAMETER: SI unit} of the values to write; other names are states
+    fitted_units  : {COMPONENT.PARAMETER: SI unit}; names that are no parameters are initial states and are
+                    not written
     target_path   : file to write; paths of parameter files become relative to its folder
 
     Raises ValueError if a component with a fitted value has no section of its own in the file.

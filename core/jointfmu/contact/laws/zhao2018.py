@@ -213,11 +213,13 @@ def tangential_stiffness(law_parameters: Zhao2018, truncated_area: Number) -> Nu
 def shear_energies(
     law_parameters: Zhao2018, F: Number, A_r: Number, spot_area_power_sum: Number
 ) -> tuple[Number, Number]:
-    """Dissipated energy W_d, and W, 2 pi times the stored energy [J], of a shear cycle, Eqs. 24 and 26.
+    """Energies [J] of a shear cycle: the dissipated energy W_d (Eq. 24), and W (Eq. 26).
+
+    W is 2 pi times the stored energy.
 
     F, A_r              : load [N] and real area [m2] of the contact
-    spot_area_power_sum : [m3] sum of a'^(3/2) over elastic spots of truncated area a'; Eq. 24 with the factor
-        9 sqrt(2 pi)/40
+    spot_area_power_sum : [m3] sum of a'^(3/2) over elastic spots of truncated area a', as in Eq. 24 with its
+        factor 9 sqrt(2 pi)/40 left out
     """
     traction = law_parameters.mu * F / A_r
     common = (

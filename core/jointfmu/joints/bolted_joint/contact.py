@@ -135,8 +135,8 @@ def force_transfer(contact_points: PressureDistribution, patches: FrictionPatche
     of a point add up to 1, except for round-off.
 
     Under equal bolt forces, each patch receives the normal force of its own area. The method is entropic
-    optimal transport from points to patches (Sinkhorn's iteration). Its width is the mean square distance of
-    the force from the nearest patch.
+    optimal transport from points to patches (Sinkhorn's iteration). Its regularisation [m2] is the mean
+    square distance of the force from the nearest patch.
     """
     square = np.sum((patches.position[:, None] - contact_points.position) ** 2, axis=2)
     nearest = np.min(square, axis=0)

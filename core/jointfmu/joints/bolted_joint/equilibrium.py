@@ -103,7 +103,8 @@ class TrialState:
 class JointAssembly:
     """Members, contact interface and bolts of a joint as one mechanical system.
 
-    Jacobians G = [G_q G_a] are with respect to the relative displacement q and the modal coordinates a.
+    The Jacobians G = [G_q G_a] are derivatives of openings, tangential displacements and bolt elongations
+    with respect to the relative displacement q and the modal coordinates a.
 
     nominal_area : nominal area of the interface [m2]
     """

@@ -145,9 +145,10 @@ def correct_sums_for_lifted_heads(
     bolt_force: Array,
     contact_sums: Mapping[str, Number],
 ) -> dict[str, Number]:
-    """Add gaps under bolt heads to the sums of a joint with rigid members, where heads lift off.
+    """Correct sums over contact and bolts of a joint with rigid members for bolt heads that lift off.
 
-    The gaps change the bolt elongation and the normal stiffness.
+    Returns the corrected sums: gaps under the heads for the bolt elongation, and the normal stiffness without
+    the bolts that have lifted off.
 
     bolt_elongation : (b) [m] since tightening
     bolt_force : (b) [N] at tightening

@@ -79,7 +79,7 @@ class ContactPairDriveParameters(DriveParameters):
 
     @property
     def max_table_torque(self) -> Number:
-        """Torque [N.m] at the end of the midline's table: max_torque."""
+        """Largest torque [N.m] in the table of the hysteresis loop's midline: the parameter max_torque."""
         return self.max_torque
 
     @property

@@ -152,9 +152,9 @@ def _first_loading_of_elastic_sides(
     quadratic_displacement_term: float,
     max_displacement: float,
 ) -> tuple[Array, Array, Array]:
-    """First loading in shear with elastic sides: n displacements [m], forces [N], tangent stiffnesses [N/m].
+    """First loading in shear of a joint with elastic members: displacements, forces, tangent stiffnesses (n).
 
-    The displacements are s = a t + b t^2, with t from 0 to 1 in equal steps. If a + b exceeds
+    The displacements [m] of side 2 are s = a t + b t^2, with t from 0 to 1 in equal steps. If a + b exceeds
     `max_displacement` [m], all displacements are scaled down to end there.
 
     linear_displacement_term, quadratic_displacement_term : a [m], b [m]
