@@ -162,11 +162,12 @@ def make_stiffness_figures(load_history: LoadHistory) -> list[Figure]:
         else "around the bolts"
     )
     text = _stiffness_text(compliances, remaining_preload, moment) + (
-        f" A force of {_format_in_display_unit(opening, 'N')} along z opens the interface {location} (linear "
-        "estimate with these stiffnesses); a joint that peels opens at a lower load, as the plot shows. "
+        f"\n\nA force of {_format_in_display_unit(opening, 'N')} along z opens the interface {location} "
+        "(linear estimate with these stiffnesses); a joint that peels opens at a lower load, as the plot "
+        "shows. "
         f"{_opening_moment_text(spring, preload, moment)}The "
         f"whole interface slips at {_format_in_display_unit(limit, 'N')} along x or y; slip begins at the "
-        "edges at a far lower load, and its loss is under Loops. The plot shows a tensile force up to "
+        "edges at a far lower load, and its loss is under Loops.\n\nThe plot shows a tensile force up to "
         f"{MAX_PLOTTED_OVER_OPENING_LOAD:g} times the opening load, free in the other five motions, and up "
         f"to {MAX_BOLT_OVER_TIGHTENING_FORCE:g} times the force of a bolt at tightening."
     )
@@ -222,8 +223,9 @@ def _stiffness_text(joint_compliances: Compliances, remaining_preload: float, be
         "joint is that of the FMU. The last three columns are shares of its compliance, by stored energy. "
         "Members is the stiffness of the complete joint divided by the share of the members; interface "
         "alone and bolts alone are between rigid sides. So the columns do not add up to the complete joint: "
-        f"deforming members load the interface unevenly. The interface has {share[2]:.1%} of the compliance "
-        f"along z and at most {largest:.1%} in any direction: {effect}. The bolts carry "
+        "deforming members load the interface unevenly."
+        f"\n\nThe interface has {share[2]:.1%} of the compliance along z and at most {largest:.1%} in any "
+        f"direction: {effect}. The bolts carry "
         f"{joint_compliances.joint_load_factor:.3f} of a force along z (load factor n Phi_K of VDI 2230), "
         "with the other motions free; where the interface is open they carry the full force, as the plot "
         "shows."

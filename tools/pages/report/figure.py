@@ -64,7 +64,7 @@ _SERIES_COLOURS = (BLUE, RED, GREEN, GREY, "#8055a8", "#b8860b")
 class Figure(NamedTuple):
     """Figure of a report: charts, table and text.
 
-    title, description : heading, and description of what the figure shows
+    title, description : heading, and description of what the figure shows; a blank line begins a paragraph
     plot_panels        : charts
     svg_pictures       : SVG elements
     data_file          : name of the CSV file next to the page

@@ -289,6 +289,7 @@ def _draw_distribution(
         label="parameter file",
     )
     plot_axes.set(xlabel=output_label, ylabel="samples below [%]", ylim=(0.0, 100.0))
+    plot_axes.locator_params(axis="x", nbins=6)  # more labels touch each other
     plot_axes.legend(fontsize=8)
 
 
