@@ -14,7 +14,7 @@ from jointfmu.files.outputs import FileKind
 from jointfmu.quantity.units import conversion_factor, unit_size
 
 from ..common.judgement import Plausibility
-from ..common.names import find_similar_names
+from ..common.names import suggest_names
 from ..common.options import format_option_flag
 from ..inputs.drawing.reading import NUMBER_WITH_UNIT_PATTERN, check_no_comma
 from .examples import EXAMPLE_PREREQUISITES, EXAMPLES
@@ -68,12 +68,6 @@ _INVALID_CHOICE_PATTERN = re.compile(r"invalid choice: '?([^' ]*)'? \(choose fro
 """Error message of argparse for an invalid choice."""
 
 
-def suggest_word(unknown_word: str, known_words: Iterable[str]) -> str:
-    """Format a suggestion for an error message: the most similar known word; empty if no word is similar."""
-    matches = find_similar_names(unknown_word, known_words, 1)
-    return f"; did you mean {matches[0]}?" if matches else ""
-
-
 class Parser(argparse.ArgumentParser):
     """Argument parser with one-line errors, negative numbers in any notation, and an example in the help.
 
@@ -120,7 +114,7 @@ class Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         """Print the error on one line, with a suggestion for an invalid choice, and exit with status 2."""
         if match := _INVALID_CHOICE_PATTERN.search(message):
-            message += suggest_word(match[1], re.findall(r"[\w.-]+", match[2]))
+            message += suggest_names(match[1], re.findall(r"[\w.-]+", match[2]))
         elif match := _INVALID_NUMBER_PATTERN.fullmatch(message):
             message = (
                 self._describe_number(match[1], match[3])

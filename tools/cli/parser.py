@@ -9,7 +9,8 @@ from typing import Any
 
 from jointfmu.version import __version__
 
-from .command import DEFAULT_SUBCOMMANDS, Parser, suggest_word
+from ..common.names import suggest_names
+from .command import DEFAULT_SUBCOMMANDS, Parser
 
 COMMAND_GROUPS = {
     "make a parameter file": ("new", "catalogue", "surface", "fit", "footprint", "parameters"),
@@ -42,7 +43,7 @@ class CommandLineParser(Parser):
         words = _insert_subcommand(list(sys.argv[1:] if args is None else args))
         parsed, unknown = super().parse_known_args(words, namespace)
         if unknown:
-            hint = suggest_word(unknown[0].partition("=")[0], _list_option_names(self, words))
+            hint = suggest_names(unknown[0].partition("=")[0], _list_option_names(self, words))
             self.error(f"unrecognized arguments: {' '.join(unknown)}{hint}")
         return parsed
 

@@ -29,3 +29,9 @@ def find_similar_names(unknown_name: str, known_names: Iterable[str], max_name_c
 
     similar = [(d, known) for known in known_names if (d := name_distance(known))[0] <= -MIN_NAME_SIMILARITY]
     return [known for _, known in sorted(similar, key=lambda pair: pair[0])[:max_name_count]]
+
+
+def suggest_names(unknown_name: str, known_names: Iterable[str], max_name_count: int = 1) -> str:
+    """Format a suggestion for an error message: the most similar known names; empty if none is similar."""
+    similar = find_similar_names(unknown_name, known_names, max_name_count)
+    return f"; did you mean {' or '.join(similar)}?" if similar else ""

@@ -13,6 +13,7 @@ from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, load_default, load_parameter_file
 
 from ...common import columns
+from ...common.names import suggest_names
 from ...common.options import format_option_flag
 from ...common.pressure import find_nominal_pressure_model, judge_joint_stiffness
 from ..command import (
@@ -22,7 +23,6 @@ from ..command import (
     declare_argument,
     declare_command,
     declare_set_option,
-    suggest_word,
 )
 from ..outputs import declare_output
 
@@ -137,7 +137,7 @@ def _is_fmu(joint_or_fmu: str | None) -> bool:
         return True
     allowed = f"{', '.join(KINDS)}, or the path of an FMU"
     raise ValueError(
-        f"unknown joint {joint_or_fmu!r}, allowed are {allowed}{suggest_word(joint_or_fmu, KINDS)}"
+        f"unknown joint {joint_or_fmu!r}, allowed are {allowed}{suggest_names(joint_or_fmu, KINDS)}"
     )
 
 

@@ -13,7 +13,7 @@ from jointfmu.parameters import read_document, read_entries
 from jointfmu.quantity import quantity_field
 from jointfmu.quantity.units import conversion_factor
 
-from ...common.names import find_similar_names
+from ...common.names import suggest_names
 from ..catalogue import SourcedNumber
 
 MATERIAL_COLUMNS = {
@@ -77,11 +77,9 @@ def find_table_row(table_name: str, row_name: str) -> MaterialOrFinish:
             return candidate
     noun = {"materials": "material", "finishes": "finish"}[table_name]
     names = [name for row in rows.values() for name in (row.row_name, *row.row_aliases)]
-    similar = find_similar_names(row_name, names, 1)
     raise ValueError(
-        f"{noun} {row_name!r} is unknown, allowed are {', '.join(rows)}"
-        f"{f'; did you mean {similar[0]}?' if similar else ''}; jointfmu new {table_name} lists their values "
-        "and other names"
+        f"{noun} {row_name!r} is unknown, allowed are {', '.join(rows)}{suggest_names(row_name, names)}; "
+        f"jointfmu new {table_name} lists their values and other names"
     )
 
 

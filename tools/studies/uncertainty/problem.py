@@ -14,7 +14,7 @@ from jointfmu.parameters import ParameterFile, format_parameter_file
 from jointfmu.quantity import Array, Interval, find_problem, flatten_fields
 from jointfmu.quantity.refusal import InputRefusal
 
-from ...common.names import find_similar_names
+from ...common.names import suggest_names
 from .curves import LoadCurves, find_load_curves
 from .journal import sha256_hex
 from .study import UncertainParameter, draw_samples, is_relative_distribution, split_settings
@@ -174,9 +174,7 @@ def _suggest_names(unknown_name: str, known_names: Sequence[str]) -> str:
         if "h" in known_names:
             return "; the roughness acts through the parameter h: vary h, as in h=+-20%"
         return "; the law of the file does not use the roughness"
-    if similar := find_similar_names(unknown_name, known_names):
-        return f"; did you mean {' or '.join(similar)}?"
-    return f", allowed are {', '.join(known_names)}"
+    return suggest_names(unknown_name, known_names, 3) or f", allowed are {', '.join(known_names)}"
 
 
 def _format_load_interval(load_curves: LoadCurves, parameter_file: ParameterFile) -> str:
