@@ -275,7 +275,7 @@ def find_vibrating_joint(system: System, joint_name: str | None = None) -> Vibra
     locked = [
         other.component.name
         for end, other in find_connections(system)
-        if end.component is joints[name] and other.component not in (None, moving) and other.component
+        if end.component is joints[name] and other.component and other.component != moving
     ]
     return VibratingJoint(
         body, joints[name], find_fmu_names(system)[name], moving, key, tuple(dict.fromkeys(locked))

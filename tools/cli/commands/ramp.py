@@ -118,31 +118,32 @@ def _print_messages(fmu_messages: Iterable[str], driven_input: str, input_unit: 
             print(f"warning: {message}", file=sys.stderr)
 
 
-def _warn_small_ramp(fmu_path: Path, input_name: str, end_value: float) -> None:
-    """Warn if a ramp ends far below the usual size of its input: the nominal value of the FMU, if above 1."""
+def _warn_small_ramp(fmu_path: Path, input_name: str, end_value: float) -> list[str]:
+    """List a warning if a ramp ends far below the usual size of its input: the nominal value, if above 1."""
     from ...run.host import read_description
 
     (variable,) = (v for v in read_description(fmu_path).modelVariables if v.name == input_name)
     nominal, unit = float(variable.nominal or 1.0), variable.unit or "1"
-    if nominal > 1.0 and abs(end_value) < MIN_RAMP_END_OVER_NOMINAL * nominal:
-        print(
-            f"warning: to = {end_value:g} {unit} is below {100.0 * MIN_RAMP_END_OVER_NOMINAL:g} % of the "
-            f"usual size of {input_name}, {nominal:g} {unit}; values are in {unit}: check the unit",
-            file=sys.stderr,
-        )
+    if nominal <= 1.0 or abs(end_value) >= MIN_RAMP_END_OVER_NOMINAL * nominal:
+        return []
+    return [
+        f"to = {end_value:g} {unit} is below {100.0 * MIN_RAMP_END_OVER_NOMINAL:g} % of the usual size of "
+        f"{input_name}, {nominal:g} {unit}; values are in {unit}: check the unit"
+    ]
 
 
 def _run_ramp(args: argparse.Namespace) -> CommandResult:
     """Run an FMU along a load ramp, and print or write its outputs."""
     result = ramp.run_ramp(args.fmu, args.input, args.to, args.step, dict(args.settings))
     _print_messages(result.log_messages, args.input, result.variable_units[args.input])
-    if args.to is not None and any(EXTRAPOLATION_WARNING in message for message in result.log_messages):
+    notes = []
+    if any(EXTRAPOLATION_WARNING in message for message in result.log_messages):
         unit = result.variable_units[args.input]
-        print(
-            f"note: --to = {args.to:g} {unit} is beyond the range of the law; check its unit", file=sys.stderr
-        )
-    _warn_small_ramp(args.fmu, args.input, args.to)
-    overload = _find_overload(args.fmu, dict(args.settings) | result.variable_columns)
+        notes.append(f"note: --to = {args.to:g} {unit} is beyond the range of the law; check its unit")
+    warnings = [
+        *_warn_small_ramp(args.fmu, args.input, args.to),
+        *_find_overload(args.fmu, dict(args.settings) | result.variable_columns),
+    ]
     result = _select_columns(result, args.input, args.columns)
     if args.csv:
         write_text(args.csv, result.format_time_series_csv())
@@ -159,7 +160,7 @@ def _run_ramp(args: argparse.Namespace) -> CommandResult:
     return CommandResult(
         json_document={"fmu": str(args.fmu), "units": result.variable_units, "columns": columns},
         output_lines=lines,
-        stderr_lines=[f"warning: {text}" for text in overload],
+        stderr_lines=[*notes, *(f"warning: {text}" for text in warnings)],
     )
 
 

@@ -39,6 +39,8 @@ is assumed. Degrees read as radians give 57."""
 MAX_CORRECTED_OVER_START_STIFFNESS = 5.0
 """A wrong unit counts as the explanation if, with the right unit, measured stiffness over stiffness of the
 start values [1] is at most this value, and at least its inverse."""
+SIMILAR_JOINT_REMEDY = "start from the parameter file of a joint of similar stiffness"
+"""What to do if a measured stiffness is far from that of the start values, and its units are right."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +80,7 @@ class MeasurementColumns:
         stated_units: Mapping[str, str],
         start_file: ParameterFile,
         is_force_plausible: bool = False,
-        remedy: str = "start from the parameter file of a joint of similar stiffness",
+        remedy: str = SIMILAR_JOINT_REMEDY,
     ) -> None:
         """Check that the measured stiffness is near the stiffness of the start values.
 

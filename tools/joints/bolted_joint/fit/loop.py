@@ -34,7 +34,12 @@ from ....inputs.fitting import hysteresis_fit
 from ....inputs.fitting.branches import MeasuredLoops
 from ....inputs.fitting.hysteresis import HysteresisLaw
 from ....inputs.fitting.least_squares import FitSolution, Unknown, UnknownExchange
-from ....inputs.fitting.measurement import Measurement, MeasurementColumns, read_measurement
+from ....inputs.fitting.measurement import (
+    SIMILAR_JOINT_REMEDY,
+    Measurement,
+    MeasurementColumns,
+    read_measurement,
+)
 from ....inputs.fitting.outcome import (
     DerivedFitValues,
     FitResult,
@@ -525,23 +530,21 @@ def _check_measured_loops(
                 "bolt",
                 "preload",
             )
-    if measured_over_start_stiffness > 1.0:
-        LOOP_COLUMN_NAMES.check_stiffness_ratio(
-            measured_data.measurement_path,
-            measured_over_start_stiffness,
-            measured_data.stated_units,
-            start_file,
-            slip_force is not None,
+    is_stiff = measured_over_start_stiffness > 1.0
+    if is_stiff or (measured_loops.is_stiffness_resolved and not is_series_fitted):
+        remedy = (
+            SIMILAR_JOINT_REMEDY
+            if is_stiff
+            else "members or structure in series with the joint may make it soft: "
+            f"{describe_series_remedy(start_file, False)}"
         )
-    elif measured_loops.is_stiffness_resolved and not is_series_fitted:
         LOOP_COLUMN_NAMES.check_stiffness_ratio(
             measured_data.measurement_path,
             measured_over_start_stiffness,
             measured_data.stated_units,
             start_file,
             slip_force is not None,
-            "members or structure in series with the joint may make it soft: "
-            f"{describe_series_remedy(start_file, False)}",
+            remedy,
         )
 
 
