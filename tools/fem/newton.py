@@ -48,11 +48,11 @@ class ContactEnergy:
     V [J/m2] is the energy of the interface per area; its derivative is the pressure p. The offset (q) [m] is
     the approach without displacement.
 
-    stiffness_matrix : K (n, n) [N/m]
-    load_vector      : f (n) [N]
-    displacement_to_approach_matrix  : T (q, n) [1] approach at the quadrature points per displacement
-    quadrature_area  : area (q) [m2] of each quadrature point
-    pressure_law     : function of the approach (q) [m]: pressure [Pa] and its derivative [Pa/m]
+    stiffness_matrix                : K (n, n) [N/m]
+    load_vector                     : f (n) [N]
+    displacement_to_approach_matrix : T (q, n) [1] approach at the quadrature points per displacement
+    quadrature_area                 : area (q) [m2] of each quadrature point
+    pressure_law                    : function of the approach (q) [m]: pressure [Pa], its derivative [Pa/m]
     """
 
     stiffness_matrix: sp.csr_matrix

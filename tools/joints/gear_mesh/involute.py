@@ -214,7 +214,7 @@ class InvoluteGearPair:
         return float(sum(curvatures))
 
     def tooth_stiffness(self, young_moduli: tuple[float, float], wheel_1_torque: float) -> float:
-        """Single stiffness c' times width [N/m] of one tooth pair in contact over the full width.
+        """Stiffness [N/m] of one tooth pair in contact: the single stiffness c' times the face width.
 
         young_moduli   : Young's moduli [Pa] of both wheels
         wheel_1_torque : [N.m] of wheel 1; below REFERENCE_LINE_LOAD the stiffness is reduced

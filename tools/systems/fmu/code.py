@@ -47,7 +47,7 @@ class _ComponentCode(NamedTuple):
     """C source code of a component of a system; components with the same code share it.
 
     text_by_file_name : {file name: text} of all files except data.c
-    data_source_texts      : texts of data.c of the components that share the files
+    data_source_texts : texts of data.c of the components that share the files
     has_fixed_data    : whether the files read the object `data`; otherwise the data are only the argument
         `joint_data` of `joint_tabulate`, and components with other data share the files
     """

@@ -236,7 +236,7 @@ def make_clamped_bolt(
     hole_diameter: float,
     young_moduli: tuple[float, float],
 ) -> ClampedBolt:
-    """Compute one bolt with its clamped parts by VDI 2230.
+    """Make one bolt with its clamped parts, for the resilience calculation of VDI 2230.
 
     plate_size     : length and width of the plate [m]
     bolt_positions : (b, 2) [m] of the bolts
